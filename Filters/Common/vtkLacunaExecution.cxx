@@ -8,7 +8,6 @@
 #include "vtkExecutive.h"
 #include "vtkInformation.h"
 #include "vtkInformationIntegerKey.h"
-#include "vtkInformationKeyLookup.h"
 #include "vtkInformationVector.h"
 #include "vtkLacunaFailure.h"
 #include "vtkLacunaInputs.h"
@@ -25,27 +24,6 @@
 namespace
 {
 using SDDP = vtkStreamingDemandDrivenPipeline;
-
-void EmptyOutputs(vtkInformationVector* outputs)
-{
-  // else VTK takes what was made of an earlier time, and is no more, for up to date
-  vtkInformationKey* const time =
-    vtkInformationKeyLookup::Find("PREVIOUS_UPDATE_TIME_STEP", "vtkStreamingDemandDrivenPipeline");
-  for (int i = 0; i < outputs->GetNumberOfInformationObjects(); ++i)
-  {
-    if (vtkDataObject* output = vtkDataObject::GetData(outputs, i))
-    {
-      output->ReleaseData(); // empty, and VTK asks again for it
-    }
-    // VTK forgets the combined request only after success: the next one would be united with it,
-    // though the whole extent may have become smaller.
-    outputs->GetInformationObject(i)->Remove(SDDP::COMBINED_UPDATE_EXTENT());
-    if (time)
-    {
-      outputs->GetInformationObject(i)->Remove(time);
-    }
-  }
-}
 
 // The text of what body throws; empty when it ran to its end. Stops and changes of the grid pass through.
 std::string ErrorOf(const std::function<void()>& body, bool* isOfMemory = nullptr)
@@ -126,7 +104,7 @@ bool TellOfBlocks(vtkAlgorithm* algorithm, vtkInformationVector* outputs)
   }
   catch (const std::runtime_error& blocks)
   {
-    EmptyOutputs(outputs);
+    vtkLacunaFailure::Empty(outputs);
     const std::string upstream = vtkLacunaFailure::GetUpstream(algorithm);
     if (upstream.empty())
     {
@@ -149,7 +127,7 @@ void RunAndTell(vtkAlgorithm* algorithm, vtkInformationVector* outputs,
   error = isAlone ? vtkLacunaFailure::GetUpstream(algorithm) : std::string();
   if (!error.empty()) // of several ranks each still meets the others in body
   {
-    EmptyOutputs(outputs);
+    vtkLacunaFailure::Empty(outputs);
     vtkLacunaFailure::PassOn(algorithm, outputs, error);
     return;
   }
@@ -172,7 +150,7 @@ void RunAndTell(vtkAlgorithm* algorithm, vtkInformationVector* outputs,
     {
       return;
     }
-    EmptyOutputs(outputs);
+    vtkLacunaFailure::Empty(outputs);
     if (!areToldAll && !announced.empty() && !isAlone &&
       vtkLacunaFailure::MayBeOfOneRank(algorithm))
     {
@@ -185,12 +163,12 @@ void RunAndTell(vtkAlgorithm* algorithm, vtkInformationVector* outputs,
   }
   catch (const vtkLacunaGridChanged& changed)
   {
-    EmptyOutputs(outputs);
+    vtkLacunaFailure::Empty(outputs);
     vtkErrorWithObjectMacro(algorithm, << changed.what());
   }
   catch (const lacuna::Aborted&)
   {
-    EmptyOutputs(outputs); // not an error: the user asked for it
+    vtkLacunaFailure::Empty(outputs); // not an error: the user asked for it
   }
 }
 }
@@ -246,7 +224,7 @@ int vtkLacunaExecution::RunAgreed(vtkAlgorithm* algorithm, vtkInformationVector*
   }
   else if (own.empty())
   {
-    EmptyOutputs(outputs);
+    vtkLacunaFailure::Empty(outputs);
     vtkLacunaFailure::Tell(algorithm, outputs, haveMet ? vtkLacunaFailure::Again(agreed) : agreed);
   }
   return 1;
@@ -283,7 +261,7 @@ int vtkLacunaExecution::RunInformation(
   {
     // not an error, see RunTogether: there is nothing, as it was before
   }
-  EmptyOutputs(outputs);
+  vtkLacunaFailure::Empty(outputs);
   for (int i = 0; i < outputs->GetNumberOfInformationObjects(); ++i)
   {
     // Otherwise VTK keeps the input's whole extent as this algorithm's, and asks for it later.

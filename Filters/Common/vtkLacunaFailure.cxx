@@ -11,6 +11,7 @@
 #include "vtkInformationDoubleKey.h"
 #include "vtkInformationDoubleVectorKey.h"
 #include "vtkInformationIntegerKey.h"
+#include "vtkInformationKeyLookup.h"
 #include "vtkInformationStringKey.h"
 #include "vtkInformationVector.h"
 #include "vtkLacunaRequest.h"
@@ -169,53 +170,6 @@ std::vector<double> GetToldState(vtkAlgorithm* algorithm)
   const double* state = own->Get(ToldOf());
   return { state, state + own->Length(ToldOf()) };
 }
-
-// Leaves error in the outputs.
-void Leave(vtkInformationVector* outputs, const std::string& error)
-{
-  for (int i = 0; i < outputs->GetNumberOfInformationObjects(); ++i)
-  {
-    outputs->GetInformationObject(i)->Set(vtkDemandDrivenPipeline::DATA_NOT_GENERATED(), 1);
-    if (vtkDataObject* output = vtkDataObject::GetData(outputs, i))
-    {
-      vtkNew<vtkStringArray> array;
-      array->SetName(vtkLacunaFailure::FieldName);
-      array->InsertNextValue(error);
-      output->GetFieldData()->AddArray(array);
-    }
-  }
-}
-
-// An error that is on the screen already: reaches only those who listen.
-void Repeat(vtkAlgorithm* algorithm, const std::string& error)
-{
-  vtkObject* listener = algorithm->HasObserver(vtkCommand::ErrorEvent)
-    ? static_cast<vtkObject*>(algorithm)
-    : vtkOutputWindow::GetInstance();
-  std::string copy = error;
-  listener->InvokeEvent(vtkCommand::ErrorEvent, copy.data());
-}
-
-// The error that data or one of its blocks holds; empty: none.
-std::string GetError(vtkDataObject* data)
-{
-  if (auto* blocks = vtkCompositeDataSet::SafeDownCast(data))
-  {
-    const auto block = vtkSmartPointer<vtkCompositeDataIterator>::Take(blocks->NewIterator());
-    for (block->InitTraversal(); !block->IsDoneWithTraversal(); block->GoToNextItem())
-    {
-      std::string error = GetError(block->GetCurrentDataObject());
-      if (!error.empty())
-      {
-        return error;
-      }
-    }
-  }
-  auto* error = data ? vtkStringArray::SafeDownCast(
-                         data->GetFieldData()->GetAbstractArray(vtkLacunaFailure::FieldName))
-                     : nullptr;
-  return error && error->GetNumberOfValues() > 0 ? error->GetValue(0) : std::string();
-}
 }
 
 //------------------------------------------------------------------------------
@@ -286,13 +240,82 @@ std::string vtkLacunaFailure::Again(const std::string& error)
 }
 
 //------------------------------------------------------------------------------
+void vtkLacunaFailure::Empty(vtkInformationVector* outputs)
+{
+  // else VTK takes what was made of an earlier time, and is no more, for up to date
+  vtkInformationKey* const time =
+    vtkInformationKeyLookup::Find("PREVIOUS_UPDATE_TIME_STEP", "vtkStreamingDemandDrivenPipeline");
+  for (int i = 0; i < outputs->GetNumberOfInformationObjects(); ++i)
+  {
+    if (vtkDataObject* output = vtkDataObject::GetData(outputs, i))
+    {
+      output->ReleaseData(); // empty, and VTK asks again for it
+    }
+    // VTK forgets the combined request only after success: the next one would be united with it,
+    // though the whole extent may have become smaller.
+    outputs->GetInformationObject(i)->Remove(SDDP::COMBINED_UPDATE_EXTENT());
+    if (time)
+    {
+      outputs->GetInformationObject(i)->Remove(time);
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaFailure::Leave(vtkInformationVector* outputs, const std::string& error)
+{
+  for (int i = 0; i < outputs->GetNumberOfInformationObjects(); ++i)
+  {
+    outputs->GetInformationObject(i)->Set(vtkDemandDrivenPipeline::DATA_NOT_GENERATED(), 1);
+    if (vtkDataObject* output = vtkDataObject::GetData(outputs, i))
+    {
+      vtkNew<vtkStringArray> array;
+      array->SetName(vtkLacunaFailure::FieldName);
+      array->InsertNextValue(error);
+      output->GetFieldData()->AddArray(array);
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaFailure::Repeat(vtkAlgorithm* algorithm, const std::string& error)
+{
+  vtkObject* listener = algorithm->HasObserver(vtkCommand::ErrorEvent)
+    ? static_cast<vtkObject*>(algorithm)
+    : vtkOutputWindow::GetInstance();
+  std::string copy = error;
+  listener->InvokeEvent(vtkCommand::ErrorEvent, copy.data());
+}
+
+//------------------------------------------------------------------------------
+std::string vtkLacunaFailure::GetOf(vtkDataObject* data)
+{
+  if (auto* blocks = vtkCompositeDataSet::SafeDownCast(data))
+  {
+    const auto block = vtkSmartPointer<vtkCompositeDataIterator>::Take(blocks->NewIterator());
+    for (block->InitTraversal(); !block->IsDoneWithTraversal(); block->GoToNextItem())
+    {
+      std::string error = GetOf(block->GetCurrentDataObject());
+      if (!error.empty())
+      {
+        return error;
+      }
+    }
+  }
+  auto* error = data ? vtkStringArray::SafeDownCast(
+                         data->GetFieldData()->GetAbstractArray(vtkLacunaFailure::FieldName))
+                     : nullptr;
+  return error && error->GetNumberOfValues() > 0 ? error->GetValue(0) : std::string();
+}
+
+//------------------------------------------------------------------------------
 std::string vtkLacunaFailure::GetUpstream(vtkAlgorithm* algorithm)
 {
   for (int port = 0; port < algorithm->GetNumberOfInputPorts(); ++port)
   {
     for (int i = 0; i < algorithm->GetNumberOfInputConnections(port); ++i)
     {
-      std::string error = GetError(algorithm->GetInputDataObject(port, i));
+      std::string error = GetOf(algorithm->GetInputDataObject(port, i));
       if (!error.empty())
       {
         return error;

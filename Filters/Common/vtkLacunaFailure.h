@@ -7,6 +7,7 @@
 #include <string>
 
 class vtkAlgorithm;
+class vtkDataObject;
 class vtkInformationVector;
 
 /// A failed algorithm fails each time VTK executes it, until something is changed. Its outputs are empty, and their field
@@ -49,6 +50,18 @@ void SetAgreed(vtkAlgorithm* algorithm, vtkInformationVector* outputs, const std
 
 /// The array of an output's field data (vtkStringArray, one value) that holds the error.
 constexpr char FieldName[] = "LacunaError";
+
+/// Empties outputs, so that VTK asks for them again and remembers nothing of the request that failed.
+void Empty(vtkInformationVector* outputs);
+
+/// Leaves error in outputs that are empty, and marks them as not generated.
+void Leave(vtkInformationVector* outputs, const std::string& error);
+
+/// An error that is on the screen already: reaches only those who listen.
+void Repeat(vtkAlgorithm* algorithm, const std::string& error);
+
+/// The error that data or one of its blocks holds; empty: none.
+std::string GetOf(vtkDataObject* data);
 
 /// The error that an input of algorithm holds; empty: none.
 std::string GetUpstream(vtkAlgorithm* algorithm);

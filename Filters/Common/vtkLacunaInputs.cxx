@@ -238,6 +238,18 @@ void vtkLacunaInputs::Check(vtkDataObject* data, const std::string& name)
 }
 
 //------------------------------------------------------------------------------
+void vtkLacunaInputs::CheckPart(vtkDataObject* data, vtkInformation* info, const std::string& name)
+{
+  auto* image = vtkImageData::SafeDownCast(data);
+  // of several pieces this one is a part of what the extent says
+  if (image && image->GetNumberOfPoints() > 0 && info->Has(SDDP::UPDATE_EXTENT()) &&
+    info->Get(SDDP::UPDATE_NUMBER_OF_PIECES()) <= 1)
+  {
+    ::CheckPart(name, image->GetExtent(), info->Get(SDDP::UPDATE_EXTENT()));
+  }
+}
+
+//------------------------------------------------------------------------------
 void vtkLacunaInputs::Check(vtkAlgorithm* algorithm)
 {
   const std::string failed = vtkLacunaFailure::GetUpstream(algorithm);
@@ -269,12 +281,7 @@ void vtkLacunaInputs::Check(vtkAlgorithm* algorithm, int port)
     {
       CheckShare(name, algorithm->GetInputAlgorithm(port, i), image != nullptr);
     }
-    // of several pieces this one is a part of what the extent says
-    if (image && image->GetNumberOfPoints() > 0 && info->Has(SDDP::UPDATE_EXTENT()) &&
-      info->Get(SDDP::UPDATE_NUMBER_OF_PIECES()) <= 1)
-    {
-      CheckPart(name, image->GetExtent(), info->Get(SDDP::UPDATE_EXTENT()));
-    }
+    CheckPart(image, info, name);
   }
 }
 

@@ -11,6 +11,7 @@
 
 class vtkAlgorithm;
 class vtkDataObject;
+class vtkInformation;
 
 namespace vtkLacunaInputs
 {
@@ -19,6 +20,10 @@ namespace vtkLacunaInputs
 /// direction of an image are not finite, or an index of its extent is beyond 2^30. Blocks of composite data are looked at one by one; data
 /// without points, cells and rows are sound.
 VTKLACUNAFILTERSCOMMON_EXPORT void Check(vtkDataObject* data, const std::string& name);
+
+/// Throws when data is an image of which less arrived than info asks for, as behind filters that give each rank a part.
+VTKLACUNAFILTERSCOMMON_EXPORT void CheckPart(
+  vtkDataObject* data, vtkInformation* info, const std::string& name);
 
 /// All inputs that algorithm has, by the numbers of their ports. Throws, too, when an input holds the error of an
 /// algorithm upstream (vtkLacunaFailure), when an image was refused

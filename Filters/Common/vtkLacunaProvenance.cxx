@@ -98,7 +98,7 @@ const char* GetVersion()
 void Record(vtkDataObject* output, vtkObjectBase* algorithm,
   const std::vector<vtkDataObject*>& inputs, const std::string& parameters)
 {
-  std::vector<std::string> steps;
+  std::vector<std::string> steps = inputs.empty() ? Get(output) : std::vector<std::string>();
   std::ostringstream step;
   step << "Lacuna " << GetVersion() << " " << algorithm->GetClassName();
   for (vtkDataObject* input : inputs)

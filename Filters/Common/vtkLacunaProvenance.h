@@ -26,6 +26,7 @@ VTKLACUNAFILTERSCOMMON_EXPORT const char* GetVersion();
 /// output is made of, it also passes on the marks that it is mirrored (vtkLacunaMirrored) and in
 /// which coordinates it is (vtkLacunaCoordinates). An image that is turned gets the record of its
 /// direction (vtkLacunaVolumeDirection), so its geometry must be set before.
+/// Without inputs the steps that output has already come first, such as those in a file.
 VTKLACUNAFILTERSCOMMON_EXPORT void Record(vtkDataObject* output, vtkObjectBase* algorithm,
   const std::vector<vtkDataObject*>& inputs, const std::string& parameters);
 

@@ -45,6 +45,15 @@ bool vtkLacunaSliceStream::RequestFields(
 }
 
 //------------------------------------------------------------------------------
+std::array<int, 6> vtkLacunaSliceStream::GetFirstSlice(vtkInformation* input)
+{
+  std::array<int, 6> slice{};
+  input->Get(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), slice.data());
+  slice[5] = slice[4];
+  return slice;
+}
+
+//------------------------------------------------------------------------------
 void vtkLacunaSliceStream::Pass(vtkAlgorithm* filter, vtkInformation* output)
 {
   output->Set(STREAM(), Find(filter)); // null removes it

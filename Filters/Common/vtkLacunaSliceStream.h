@@ -19,6 +19,7 @@
 #include "vtkLacunaFiltersCommonModule.h" // for export macro
 #include "vtkObject.h"
 
+#include <array>
 #include <cstdint>
 
 class vtkAlgorithm;
@@ -41,6 +42,9 @@ public:
   /// preview, for its field data, and returns true; else returns false.
   static bool RequestFields(
     vtkAlgorithm* consumer, vtkInformation* input, int port = 0, int connection = 0);
+
+  /// The extent of the first slice of a preview: to be asked for when only field data are needed beside the stream.
+  static std::array<int, 6> GetFirstSlice(vtkInformation* input);
 
   /// For RequestInformation of filters that change nothing but field data: passes the stream of
   /// input port 0 on to output, or takes away the one of before.

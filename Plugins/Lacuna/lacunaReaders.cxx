@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// What Lacuna and ParaView's readers have to know of each other.
+/// What Lacuna and ParaView have to know of each other.
+#include "vtkLacunaAlgorithm.h"
 #include "vtkLacunaRequest.h"
 #include "vtkMetaReader.h"
+#include "vtkPVCompositeDataPipeline.h"
 #include "vtkSMSettings.h"
 
 #include <string>
@@ -30,4 +32,12 @@ vtkAlgorithm* GetInnerReader(vtkAlgorithm* algorithm)
 }
 
 const bool Known = (vtkLacunaRequest::SetInnerReader(GetInnerReader), true);
+
+// ParaView executes its pipelines on all ranks. Algorithms that a script makes are on its rank alone.
+bool ExecutesOnAllRanks(vtkAlgorithm* algorithm)
+{
+  return vtkPVCompositeDataPipeline::SafeDownCast(algorithm->GetExecutive()) != nullptr;
+}
+
+const bool Agreeing = (lacuna::Algorithm::SetExecutesOnAllRanks(ExecutesOnAllRanks), true);
 }

@@ -2,10 +2,14 @@
 #include "lacunaRanks.h"
 
 #include <exception>
-#include <stdexcept>
 
 namespace lacuna
 {
+OtherRankStopped::OtherRankStopped()
+  : std::runtime_error("another rank has stopped; its own message says why")
+{
+}
+
 void Ranks::Together(const std::function<void()>& body) const
 {
   std::exception_ptr error;
@@ -24,7 +28,7 @@ void Ranks::Together(const std::function<void()>& body) const
   }
   if (!fine)
   {
-    throw std::runtime_error("another rank has stopped; its own message says why");
+    throw OtherRankStopped();
   }
 }
 

@@ -6,9 +6,17 @@
 
 #include <cstdint>
 #include <functional>
+#include <stdexcept>
 
 namespace lacuna
 {
+/// Thrown on the ranks that have gone on when another one threw.
+class OtherRankStopped : public std::runtime_error
+{
+public:
+  OtherRankStopped();
+};
+
 /// Processes that run a kernel on the same data. A kernel takes a Ranks& and does its own part of
 /// the work, by its rank; its result must not depend on how many ranks there are. This class is one
 /// rank alone.
@@ -23,7 +31,7 @@ public:
   virtual int GetRank() const { return 0; }
   virtual int GetNumber() const { return 1; }
 
-  /// Calls body. If it throws on any rank, all throw: the others std::runtime_error, so that nobody
+  /// Calls body. If it throws on any rank, all throw: the others OtherRankStopped, so that nobody
   /// waits for a rank that has given up.
   void Together(const std::function<void()>& body) const;
 

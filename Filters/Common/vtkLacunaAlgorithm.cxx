@@ -1,0 +1,735 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkLacunaAlgorithm.h"
+
+#include "lacunaMemory.h"
+#include "lacunaPrintableText.h"
+#include "vtkAlgorithmOutput.h"
+#include "vtkCommand.h"
+#include "vtkCompositeDataSet.h"
+#include "vtkDataArray.h"
+#include "vtkDataSetAttributes.h"
+#include "vtkDemandDrivenPipeline.h"
+#include "vtkExtentTranslator.h"
+#include "vtkFieldData.h"
+#include "vtkImageData.h"
+#include "vtkInformation.h"
+#include "vtkInformationIntegerRequestKey.h"
+#include "vtkInformationVector.h"
+#include "vtkLacunaCoordinates.h"
+#include "vtkLacunaErrors.h"
+#include "vtkLacunaInputs.h"
+#include "vtkLacunaProvenance.h"
+#include "vtkMatrix3x3.h"
+#include "vtkNew.h"
+#include "vtkPointSet.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
+#include "vtkTable.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <new>
+#include <sstream>
+#include <stdexcept>
+#include <string_view>
+
+using SDDP = vtkStreamingDemandDrivenPipeline;
+
+namespace lacuna
+{
+namespace
+{
+constexpr std::array<int, 6> Nothing{ 0, -1, 0, -1, 0, -1 };
+const char* const Stopped = "it was stopped";
+
+bool (*ExecutesOnAllRanks)(vtkAlgorithm*) = nullptr;
+
+bool IsEmpty(const int* extent)
+{
+  return extent[0] > extent[1] || extent[2] > extent[3] || extent[4] > extent[5];
+}
+
+bool IsGrid(vtkInformation* info)
+{
+  vtkDataObject* data = vtkDataObject::GetData(info);
+  return data && data->GetExtentType() == VTK_3D_EXTENT;
+}
+
+/// Those of an image or another grid; null of other data, which may have the extent of what they were made of.
+const int* GetWhole(vtkInformation* info)
+{
+  return IsGrid(info) ? info->Get(SDDP::WHOLE_EXTENT()) : nullptr;
+}
+
+bool HasNoElements(vtkDataObject* data)
+{
+  auto* set = vtkDataSet::SafeDownCast(data);
+  auto* table = vtkTable::SafeDownCast(data);
+  return !data || (set && set->GetNumberOfPoints() == 0) ||
+    (table && table->GetNumberOfRows() == 0);
+}
+
+/// The text of what body throws; empty when it came to its end.
+template <class Callable>
+std::string GetError(const Callable& body)
+{
+  try
+  {
+    body();
+    return {};
+  }
+  catch (const Aborted&)
+  {
+    return Stopped;
+  }
+  catch (const std::bad_alloc&)
+  {
+    return "out of memory";
+  }
+  catch (const std::exception& error)
+  {
+    return ToPrintable(error.what());
+  }
+}
+
+/// Bytes of a point of an image in its active array, which is all that VTK announces behind a filter.
+double GetBytesPerPoint(vtkInformation* image)
+{
+  vtkInformation* array = vtkDataObject::GetActiveFieldInformation(
+    image, vtkDataObject::FIELD_ASSOCIATION_POINTS, vtkDataSetAttributes::SCALARS);
+  if (!array || !array->Has(vtkDataObject::FIELD_ARRAY_TYPE()))
+  {
+    return 1;
+  }
+  const int components = array->Has(vtkDataObject::FIELD_NUMBER_OF_COMPONENTS())
+    ? array->Get(vtkDataObject::FIELD_NUMBER_OF_COMPONENTS())
+    : 1;
+  return std::max(1, vtkDataArray::GetDataTypeSize(array->Get(vtkDataObject::FIELD_ARRAY_TYPE()))) *
+    static_cast<double>(std::max(1, components));
+}
+
+/// Throws when a part of an image that is not here yet does not fit into the memory.
+void RequireMemoryFor(vtkInformation* image, const std::array<int, 6>& part)
+{
+  vtkInformation* data = vtkDataObject::GetData(image)->GetInformation();
+  const int* here = data->Get(vtkDataObject::DATA_EXTENT());
+  bool isHere = here != nullptr;
+  for (int a = 0; isHere && a < 6; a += 2)
+  {
+    isHere = here[a] <= part[a] && part[a + 1] <= here[a + 1];
+  }
+  if (isHere || IsEmpty(part.data()))
+  {
+    return;
+  }
+  const int* whole = image->Get(SDDP::WHOLE_EXTENT());
+  std::ostringstream what;
+  what << "this filter takes "
+       << (std::equal(part.begin(), part.end(), whole) ? "its input as a whole"
+                                                       : "a part of its input")
+       << ", which with";
+  double size = GetBytesPerPoint(image);
+  for (int a = 0; a < 3; ++a)
+  {
+    const double points = static_cast<double>(part[2 * a + 1]) - part[2 * a] + 1;
+    size *= points;
+    what << (a > 0 ? " x " : " ") << points;
+  }
+  what << " points";
+  RequireMemory(what.str(), size);
+}
+
+/// One piece also of an image: whoever makes it would divide the extent once more.
+void AskForPiece(vtkInformation* input)
+{
+  input->Set(SDDP::UPDATE_PIECE_NUMBER(), 0);
+  input->Set(SDDP::UPDATE_NUMBER_OF_PIECES(), 1);
+  input->Set(SDDP::UPDATE_NUMBER_OF_GHOST_LEVELS(), 0);
+}
+
+bool TakesType(vtkAlgorithm* algorithm, int port, vtkDataObject* data)
+{
+  vtkInformation* taken = algorithm->GetInputPortInformation(port);
+  for (int t = 0; t < taken->Length(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE()); ++t)
+  {
+    if (data->IsA(taken->Get(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), t)))
+    {
+      return true;
+    }
+  }
+  return false;
+}
+
+/// Calls body for each input that is connected: its port, number and information.
+template <class Callable>
+void ForEachInput(vtkAlgorithm* algorithm, const Callable& body)
+{
+  for (int port = 0; port < algorithm->GetNumberOfInputPorts(); ++port)
+  {
+    for (int i = 0; i < algorithm->GetNumberOfInputConnections(port); ++i)
+    {
+      body(port, i, algorithm->GetInputInformation(port, i));
+    }
+  }
+}
+
+/// Three numbers of its size, and a hash of where it is.
+std::array<std::uint64_t, 4> GetFingerprint(vtkDataObject* data)
+{
+  std::array<std::uint64_t, 4> numbers{};
+  const auto hash = [&numbers](const void* values, std::size_t bytes)
+  {
+    const std::string_view text(static_cast<const char*>(values), bytes);
+    numbers[3] = 31 * numbers[3] + std::hash<std::string_view>{}(text);
+  };
+  if (auto* image = vtkImageData::SafeDownCast(data))
+  {
+    int dimensions[3];
+    image->GetDimensions(dimensions);
+    std::copy_n(dimensions, 3, numbers.begin());
+    hash(image->GetOrigin(), 3 * sizeof(double));
+    hash(image->GetSpacing(), 3 * sizeof(double));
+    hash(image->GetDirectionMatrix()->GetData(), 9 * sizeof(double));
+  }
+  else if (data)
+  {
+    numbers[0] = data->GetNumberOfElements(vtkDataObject::POINT);
+    numbers[1] = data->GetNumberOfElements(vtkDataObject::CELL);
+    numbers[2] = data->GetNumberOfElements(vtkDataObject::ROW);
+    auto* set = vtkPointSet::SafeDownCast(data);
+    vtkDataArray* points = set && set->GetPoints() ? set->GetPoints()->GetData() : nullptr;
+    if (points && points->GetNumberOfValues() > 0)
+    {
+      hash(points->GetVoidPointer(0),
+        static_cast<std::size_t>(points->GetNumberOfValues()) * points->GetDataTypeSize());
+    }
+  }
+  return numbers;
+}
+}
+
+//------------------------------------------------------------------------------
+std::string AskForExtent(vtkInformation* input, const std::array<int, 6>& extent)
+{
+  if (!GetWhole(input)) // blocks, which are refused
+  {
+    AskForPiece(input);
+    return {};
+  }
+  std::array<int, 6> asked = extent;
+  std::string refused = GetError([&] { RequireMemoryFor(input, extent); });
+  if (!refused.empty())
+  {
+    // Readers that use MPI end the program when they are asked for nothing.
+    const int* whole = input->Get(SDDP::WHOLE_EXTENT());
+    asked = { whole[0], whole[0], whole[2], whole[2], whole[4], whole[4] };
+  }
+  input->Set(SDDP::UPDATE_EXTENT(), asked.data(), 6);
+  AskForPiece(input);
+  return refused;
+}
+
+//------------------------------------------------------------------------------
+std::string AskForAll(vtkInformation* input)
+{
+  const int* whole = GetWhole(input);
+  if (!whole)
+  {
+    AskForPiece(input);
+    return {};
+  }
+  std::array<int, 6> extent{};
+  std::copy_n(whole, 6, extent.begin());
+  return AskForExtent(input, extent);
+}
+
+//------------------------------------------------------------------------------
+vtkInformation* Ports::GetInputInformation(int port, int connection) const
+{
+  return this->Inputs[port]->GetInformationObject(connection);
+}
+
+//------------------------------------------------------------------------------
+vtkInformation* Ports::GetOutputInformation(int port) const
+{
+  return this->Outputs->GetInformationObject(port);
+}
+
+//------------------------------------------------------------------------------
+std::array<int, 6> Ports::GetExtent(int port) const
+{
+  std::array<int, 6> extent = Nothing;
+  this->GetOutputInformation(port)->Get(SDDP::UPDATE_EXTENT(), extent.data());
+  return extent;
+}
+
+//------------------------------------------------------------------------------
+bool Ports::IsFirst() const
+{
+  for (int i = 0; i < this->Outputs->GetNumberOfInformationObjects(); ++i)
+  {
+    if (this->Outputs->GetInformationObject(i)->Get(SDDP::UPDATE_PIECE_NUMBER()) > 0)
+    {
+      return false;
+    }
+  }
+  return true;
+}
+
+//------------------------------------------------------------------------------
+bool Ports::IsAsked() const
+{
+  for (int i = 0; i < this->Outputs->GetNumberOfInformationObjects(); ++i)
+  {
+    vtkInformation* info = this->GetOutputInformation(i);
+    const int* whole = GetWhole(info);
+    const bool isUnknown = i == 0 && whole && IsEmpty(whole); // there may be something to report
+    if (IsGrid(info) && (isUnknown || !IsEmpty(this->GetExtent(i).data())))
+    {
+      return true;
+    }
+  }
+  return false;
+}
+
+//------------------------------------------------------------------------------
+Algorithm::Algorithm(vtkAlgorithm* self)
+  : Self(self)
+{
+}
+
+Algorithm::~Algorithm() = default;
+
+void Algorithm::SetExecutesOnAllRanks(bool (*function)(vtkAlgorithm*))
+{
+  ExecutesOnAllRanks = function;
+}
+
+void Algorithm::Announce(const Ports&) {}
+
+//------------------------------------------------------------------------------
+void Algorithm::MakeNothing(const Ports& ports)
+{
+  for (int i = 0; i < this->Self->GetNumberOfOutputPorts(); ++i)
+  {
+    ports.GetOutput<vtkDataObject>(i)->GetFieldData()->Initialize(); // VTK passes the input's
+  }
+}
+
+//------------------------------------------------------------------------------
+void Algorithm::Ask(const Ports& ports)
+{
+  ForEachInput(this->Self,
+    [&](int port, int, vtkInformation* input)
+    {
+      if (port == 0 && this->Sharing == Share::Parts && GetWhole(input))
+      {
+        this->AskFor(input, GetPart(ports.GetOutputInformation()));
+      }
+      else
+      {
+        this->AskForWhole(input);
+      }
+    });
+}
+
+//------------------------------------------------------------------------------
+std::vector<vtkDataObject*> Algorithm::GetOrigins(const Ports& ports) const
+{
+  std::vector<vtkDataObject*> found;
+  ForEachInput(this->Self,
+    [&](int port, int i, vtkInformation*)
+    {
+      auto* data = ports.GetInput<vtkDataObject>(port, i);
+      if (!HasNoElements(data))
+      {
+        found.push_back(data);
+      }
+    });
+  return found;
+}
+
+//------------------------------------------------------------------------------
+void Algorithm::AskFor(vtkInformation* input, const std::array<int, 6>& extent)
+{
+  const std::string refused = AskForExtent(input, extent);
+  this->Refused = refused.empty() ? this->Refused : refused;
+}
+
+//------------------------------------------------------------------------------
+void Algorithm::AskForWhole(vtkInformation* input)
+{
+  const std::string refused = AskForAll(input);
+  this->Refused = refused.empty() ? this->Refused : refused;
+}
+
+//------------------------------------------------------------------------------
+std::array<int, 6> Algorithm::GetPart(vtkInformation* output)
+{
+  // VTK divides the extent only when it executes the algorithm, too late to ask the input for it.
+  std::array<int, 6> asked = Nothing;
+  output->Get(SDDP::UPDATE_EXTENT(), asked.data());
+  const int pieces = output->Get(SDDP::UPDATE_NUMBER_OF_PIECES());
+  if (pieces <= 1)
+  {
+    return asked;
+  }
+  const int mode = output->Has(vtkExtentTranslator::UPDATE_SPLIT_MODE())
+    ? output->Get(vtkExtentTranslator::UPDATE_SPLIT_MODE())
+    : vtkExtentTranslator::BLOCK_MODE;
+  std::array<int, 6> part{};
+  vtkNew<vtkExtentTranslator> translator;
+  translator->PieceToExtentThreadSafe(output->Get(SDDP::UPDATE_PIECE_NUMBER()), pieces,
+    output->Get(SDDP::UPDATE_NUMBER_OF_GHOST_LEVELS()), asked.data(), part.data(), mode, 0);
+  return part;
+}
+
+//------------------------------------------------------------------------------
+void Algorithm::UpdateInput(const Ports& ports, int port)
+{
+  this->Refused.clear();
+  this->Ask(ports);
+  for (int i = 0; i < this->Self->GetNumberOfInputConnections(port); ++i)
+  {
+    vtkAlgorithmOutput* connection = this->Self->GetInputConnection(port, i);
+    connection->GetProducer()->Update(connection->GetIndex()); // also when refused: ranks may meet
+    if (vtkLacunaWasStopped(ports.GetInputInformation(port, i)))
+    {
+      throw Aborted();
+    }
+  }
+  this->CheckInputs(ports, port);
+}
+
+//------------------------------------------------------------------------------
+int Algorithm::AnnounceOutputs(vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  const vtkLacunaRanks ranks;
+  const Ports ports(inputs, outputs, ranks);
+  const int count = outputs->GetNumberOfInformationObjects();
+  vtkLacunaForgetAbort(this->Self);
+  this->Announced.clear();
+  this->Announced = GetError(
+    [&]
+    {
+      for (int i = 0; i < count; ++i)
+      {
+        vtkInformation* info = outputs->GetInformationObject(i);
+        const bool isDivided = this->Sharing == Share::Parts || this->Sharing == Share::EachRank;
+        info->Remove(vtkAlgorithm::CAN_PRODUCE_SUB_EXTENT());
+        if (isDivided && vtkImageData::GetData(info))
+        {
+          info->Set(vtkAlgorithm::CAN_PRODUCE_SUB_EXTENT(), 1);
+        }
+        if (this->Self->GetNumberOfInputPorts() == 0)
+        {
+          info->Set(vtkAlgorithm::CAN_HANDLE_PIECE_REQUEST(), 1); // so that all ranks execute it
+        }
+      }
+      this->RefuseBlocks();
+      this->Announce(ports);
+    });
+  const bool isOther = this->Sharing == Share::FirstRank && ranks.GetRank() > 0;
+  this->IsElsewhere = false;
+  for (int i = 0; i < count && (isOther || !this->Announced.empty()); ++i)
+  {
+    vtkInformation* info = outputs->GetInformationObject(i);
+    const int* whole = GetWhole(info);
+    this->IsElsewhere = this->IsElsewhere || (whole && !IsEmpty(whole));
+    // Otherwise VTK keeps the input's whole extent as this algorithm's, and asks for it.
+    info->Set(SDDP::WHOLE_EXTENT(), Nothing.data(), 6);
+  }
+  if (!this->Announced.empty())
+  {
+    vtkLacunaErrors::Empty(outputs);
+    for (int i = 0; i < count; ++i)
+    {
+      vtkInformation* info = outputs->GetInformationObject(i);
+      info->Set(SDDP::UPDATE_EXTENT(), Nothing.data(), 6);
+      info->Set(SDDP::UPDATE_EXTENT_INITIALIZED(), 0);      // what is asked for then is all again
+      info->Set(vtkAlgorithm::CAN_PRODUCE_SUB_EXTENT(), 1); // all ranks execute it
+    }
+  }
+  return 1; // also after an error, which is reported with the data: VTK would not execute what follows
+}
+
+//------------------------------------------------------------------------------
+int Algorithm::AskForInputs(vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  for (int i = 0; i < outputs->GetNumberOfInformationObjects(); ++i)
+  {
+    // VTK would go on to ask for nothing, whatever is announced next.
+    const int* whole = GetWhole(outputs->GetInformationObject(i));
+    if (whole && IsEmpty(whole))
+    {
+      outputs->GetInformationObject(i)->Set(SDDP::UPDATE_EXTENT_INITIALIZED(), 0);
+    }
+  }
+  this->Refused.clear();
+  this->Ask(Ports(inputs, outputs, vtkLacunaRanks()));
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+int Algorithm::MakeOutputs(vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  const vtkLacunaRanks ranks;
+  const bool canAgree = ranks.GetNumber() > 1 &&
+    (this->Sharing == Share::Together || (ExecutesOnAllRanks && ExecutesOnAllRanks(this->Self)));
+  // VTK executes all ranks after a change, and later those that are asked for something else.
+  const std::vector<double> times = this->GetTimes();
+  const bool isSame = canAgree && this->Agreed.Times == times;
+  const bool isTogether = this->Sharing == Share::Together; // also for another time step
+  const bool haveMet = isSame ||
+    (canAgree && !isTogether && !this->Agreed.Times.empty() && this->Agreed.Times[0] == times[0]);
+  std::string error;
+  if (isSame && !this->Agreed.Error.empty())
+  {
+    error = this->Agreed.Error + " (change a property to try again)";
+  }
+  else if (canAgree && !haveMet)
+  {
+    error = this->MakeAgreed(Ports(inputs, outputs, ranks), ranks);
+    this->Agreed = { times, error };
+  }
+  else
+  {
+    const Ranks alone;
+    const Ports ports(inputs, outputs, alone, haveMet);
+    error = GetError(
+      [&]
+      {
+        this->CheckRequest(ports);
+        this->MakeWanted(ports);
+      });
+  }
+  if (!error.empty())
+  {
+    this->Fail(outputs, error);
+  }
+  return 1; // also after an error, so that views become empty and recover
+}
+
+//------------------------------------------------------------------------------
+std::string Algorithm::MakeAgreed(const Ports& ports, const vtkLacunaRanks& ranks)
+{
+  std::string error = ranks.GetFirstText(GetError([&] { this->CheckRequest(ports); }));
+  error = error.empty() ? ranks.GetFirstText(this->CompareInputs(ranks)) : error;
+  if (!error.empty())
+  {
+    return error;
+  }
+  bool isOfOther = false;
+  error = GetError(
+    [&]
+    {
+      try
+      {
+        this->MakeWanted(ports);
+      }
+      catch (const OtherRankStopped&)
+      {
+        isOfOther = true; // it has the text
+      }
+    });
+  error = ranks.GetFirstText(error);
+  return error.empty() && isOfOther ? "another rank has stopped" : error;
+}
+
+//------------------------------------------------------------------------------
+std::string Algorithm::CompareInputs(const vtkLacunaRanks& ranks) const
+{
+  if (this->Sharing == Share::Parts)
+  {
+    return {};
+  }
+  bool isSame = true;
+  ForEachInput(this->Self,
+    [&](int port, int i, vtkInformation*)
+    {
+      const auto own = GetFingerprint(this->Self->GetInputDataObject(port, i));
+      auto first = own;
+      if (ranks.GetRank() > 0)
+      {
+        first = {};
+      }
+      ranks.Sum(first.data(), static_cast<std::int64_t>(first.size()));
+      // what only the first rank makes is nowhere else
+      const bool isElsewhere =
+        this->Sharing == Share::FirstRank && own[0] == 0 && own[1] == 0 && own[2] == 0;
+      isSame = isSame && (own == first || isElsewhere);
+    });
+  return isSame
+    ? std::string()
+    : "the inputs are not the same on all ranks: a filter before this one gives each rank a part, "
+      "or "
+      "all to the first, or the nodes have other files; save the data and read them again, or run "
+      "one rank";
+}
+
+//------------------------------------------------------------------------------
+void Algorithm::MakeWanted(const Ports& ports)
+{
+  const bool hasInput = this->Self->GetNumberOfInputPorts() == 0 || this->TakesEmpty ||
+    !HasNoElements(ports.GetInput<vtkDataObject>());
+  if (!this->IsWanted(ports) || !hasInput)
+  {
+    this->MakeNothing(ports);
+    return;
+  }
+  vtkLacunaExecution execution(this->Self);
+  this->Make(ports, execution);
+  for (int i = 0; i < this->Self->GetNumberOfOutputPorts(); ++i)
+  {
+    auto* image = ports.GetOutput<vtkImageData>(i);
+    if (image && image->GetNumberOfPoints() > 0 && this->Sharing != Share::FirstRank)
+    {
+      image->Crop(ports.GetExtent(i).data());
+    }
+  }
+  this->Record(ports);
+}
+
+//------------------------------------------------------------------------------
+bool Algorithm::IsWanted(const Ports& ports) const
+{
+  const bool isMesh = !vtkImageData::GetData(ports.GetOutputInformation());
+  switch (this->Sharing)
+  {
+    case Share::Together:
+      return vtkLacunaRanks().GetNumber() > 1 || ports.IsAsked(); // all of them work
+    case Share::FirstRank:
+      return ports.IsFirst() && !this->IsElsewhere;
+    case Share::EachRank:
+      return isMesh ? ports.IsFirst() : ports.IsAsked();
+    default:
+      return isMesh || ports.IsAsked();
+  }
+}
+
+//------------------------------------------------------------------------------
+void Algorithm::Record(const Ports& ports) const
+{
+  const std::vector<vtkDataObject*> origins = this->GetOrigins(ports);
+  for (int i = 0; i < this->Self->GetNumberOfOutputPorts(); ++i)
+  {
+    auto* output = ports.GetOutput<vtkDataObject>(i);
+    const std::string parameters = this->Parameters(i);
+    const bool isThere = !HasNoElements(output) || output->GetFieldData()->GetNumberOfArrays() > 0;
+    if (isThere && !(origins.empty() && parameters.empty()))
+    {
+      vtkLacunaProvenance::Record(output, this->Self, origins, parameters);
+      if (!this->KeepsPlace)
+      {
+        vtkLacunaCoordinates::Clear(output);
+      }
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
+void Algorithm::RefuseBlocks()
+{
+  // VTK executes block by block and announces each, too: known by the time, which is that of all of them.
+  const double now = this->GetTimes()[0];
+  ForEachInput(this->Self,
+    [&](int port, int i, vtkInformation*)
+    {
+      auto* blocks = vtkCompositeDataSet::SafeDownCast(this->Self->GetInputDataObject(port, i));
+      const bool isRefused = blocks && !TakesType(this->Self, port, blocks);
+      if (!this->TakesBlocks && (isRefused || this->BlocksAt == now))
+      {
+        this->BlocksAt = now;
+        throw std::runtime_error("input " + std::to_string(port) +
+          " has blocks, and this takes one data set: choose one by Extract Block, or use a filter "
+          "for each");
+      }
+    });
+}
+
+//------------------------------------------------------------------------------
+void Algorithm::CheckRequest(const Ports& ports) const
+{
+  if (vtkLacunaCheckAbort(this->Self))
+  {
+    throw Aborted();
+  }
+  this->CheckInputs(ports);
+}
+
+//------------------------------------------------------------------------------
+void Algorithm::CheckInputs(const Ports& ports, int only) const
+{
+  const auto require = [](const std::string& error)
+  {
+    if (error == Stopped)
+    {
+      throw Aborted();
+    }
+    if (!error.empty())
+    {
+      throw std::runtime_error(error);
+    }
+  };
+  require(this->Announced);
+  require(this->Refused);
+  ForEachInput(this->Self,
+    [&](int port, int i, vtkInformation* info)
+    {
+      if (only < 0 || port == only)
+      {
+        const std::string name = "input " + std::to_string(port);
+        auto* data = ports.GetInput<vtkDataObject>(port, i);
+        require(vtkLacunaErrors::GetOf(data));
+        vtkLacunaInputs::Check(data, name);
+        vtkLacunaInputs::CheckPart(data, info, name);
+      }
+    });
+}
+
+//------------------------------------------------------------------------------
+std::vector<double> Algorithm::GetTimes() const
+{
+  auto* executive = vtkDemandDrivenPipeline::SafeDownCast(this->Self->GetExecutive());
+  std::vector<double> times{ executive ? static_cast<double>(executive->GetPipelineMTime()) : 0 };
+  const auto add = [&times](vtkInformation* info)
+  {
+    vtkDataObject* data = vtkDataObject::GetData(info);
+    const bool hasTimes = info->Has(SDDP::TIME_STEPS()) || info->Has(SDDP::TIME_RANGE());
+    times.push_back(
+      hasTimes && info->Has(SDDP::UPDATE_TIME_STEP()) ? info->Get(SDDP::UPDATE_TIME_STEP()) : 0);
+    times.push_back(data && data->GetInformation()->Has(vtkDataObject::DATA_TIME_STEP())
+        ? data->GetInformation()->Get(vtkDataObject::DATA_TIME_STEP())
+        : 0);
+  };
+  ForEachInput(this->Self, [&](int, int, vtkInformation* info) { add(info); });
+  return times;
+}
+
+//------------------------------------------------------------------------------
+void Algorithm::Fail(vtkInformationVector* outputs, const std::string& error)
+{
+  vtkLacunaErrors::Empty(outputs);
+  if (error == Stopped)
+  {
+    return; // not an error: the user asked for it
+  }
+  vtkLacunaErrors::Leave(outputs, error);
+  if (!vtkObject::GetGlobalWarningDisplay())
+  {
+    return;
+  }
+  const std::vector<double> times = this->GetTimes();
+  const bool isShown = (this->Shown.Times == times && this->Shown.Error == error) ||
+    vtkLacunaErrors::GetUpstream(this->Self) == error;
+  if (isShown)
+  {
+    vtkLacunaErrors::Repeat(this->Self, error);
+    return;
+  }
+  if (!this->Self->HasObserver(vtkCommand::ErrorEvent)) // who may keep it to himself
+  {
+    this->Shown = { times, error };
+  }
+  vtkErrorWithObjectMacro(this->Self, << error);
+}
+}
