@@ -10,16 +10,10 @@
 #include "vtkImageData.h"
 #include "vtkImplicitFunction.h"
 #include "vtkInformation.h"
-#include "vtkInformationVector.h"
 #include "vtkLacunaArrays.h"
-#include "vtkLacunaExecution.h"
 #include "vtkLacunaFieldData.h"
 #include "vtkLacunaFunctionText.h"
-#include "vtkLacunaMeeting.h"
 #include "vtkLacunaOcclusionInput.h"
-#include "vtkLacunaProvenance.h"
-#include "vtkLacunaRanks.h"
-#include "vtkLacunaRequest.h"
 #include "vtkLacunaVolumeDirection.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
@@ -32,12 +26,15 @@
 #include <cmath>
 #include <cstddef>
 #include <memory>
+#include <numeric>
 #include <sstream>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 vtkStandardNewMacro(vtkLacunaOccludedAngle);
+
+using Pipeline = vtkStreamingDemandDrivenPipeline;
 
 namespace
 {
@@ -131,29 +128,6 @@ public:
     return images;
   }
 
-  /// For the record of how the output was made.
-  static std::string GetParameters(const vtkLacunaOccludedAngle& self)
-  {
-    lacuna::ParameterText parameters;
-    parameters.Add("ScalarArray", self.ScalarArray)
-      .Add("Mode", self.Mode == BINARY ? "Binary" : "Continuous")
-      .Add("Attenuation", self.Attenuation)
-      .Add("NumberOfDirections", self.NumberOfDirections)
-      .Add("ThresholdsOverPi", self.ThresholdsOverPi)
-      .Add("LocalRadii", self.LocalRadii)
-      .Add("ObjectOpacity", self.ObjectOpacity)
-      .Add("Dilation", self.Dilation)
-      .Add("KeepData", self.KeepData)
-      .Add("MedianKernel", self.MedianKernel);
-    if (self.Attenuation == OPACITY_FUNCTION)
-    {
-      parameters.Add("OpacityFunction", GetNodes(self.OpacityFunction));
-    }
-    return parameters
-      .Add("ReconstructionSpace", vtkLacunaFunctionText::Describe(self.ReconstructionSpace))
-      .Get();
-  }
-
 private:
   lacuna::GrowthOptions GetOptions() const
   {
@@ -233,8 +207,9 @@ private:
 
 //------------------------------------------------------------------------------
 vtkLacunaOccludedAngle::vtkLacunaOccludedAngle()
-  : Meeting(std::make_unique<vtkLacunaMeeting>())
 {
+  this->Sharing = lacuna::Share::Together;
+  this->TakesEmpty = true; // an error
   this->SetNumberOfInputPorts(2);
 }
 
@@ -354,132 +329,106 @@ int vtkLacunaOccludedAngle::FillInputPortInformation(int port, vtkInformation* i
 }
 
 //------------------------------------------------------------------------------
-int vtkLacunaOccludedAngle::RequestInformation(
-  vtkInformation*, vtkInformationVector**, vtkInformationVector* outputVector)
+void vtkLacunaOccludedAngle::Announce(const lacuna::Ports& ports)
 {
-  return vtkLacunaExecution::RunInformation(this, outputVector,
-    [&]
-    {
-      vtkInformation* info = outputVector->GetInformationObject(0);
-      vtkDataObject::SetPointDataActiveScalarInfo(info, VTK_FLOAT, 1);
-      if (this->KeepIterations) // instead of the input's time
-      {
-        std::vector<double> steps(this->ThresholdsOverPi.size());
-        for (std::size_t i = 0; i < steps.size(); ++i)
-        {
-          steps[i] = static_cast<double>(i) + 1;
-        }
-        const double range[2] = { 1, static_cast<double>(steps.size()) };
-        info->Set(vtkStreamingDemandDrivenPipeline::TIME_STEPS(), steps.data(),
-          static_cast<int>(steps.size()));
-        info->Set(vtkStreamingDemandDrivenPipeline::TIME_RANGE(), range, 2);
-      }
-    });
+  vtkInformation* info = ports.GetOutputInformation();
+  vtkDataObject::SetPointDataActiveScalarInfo(info, VTK_FLOAT, 1);
+  if (this->KeepIterations) // instead of the input's time
+  {
+    std::vector<double> steps(this->ThresholdsOverPi.size());
+    std::iota(steps.begin(), steps.end(), 1.0);
+    const double range[2] = { 1, static_cast<double>(steps.size()) };
+    info->Set(Pipeline::TIME_STEPS(), steps.data(), static_cast<int>(steps.size()));
+    info->Set(Pipeline::TIME_RANGE(), range, 2);
+  }
 }
 
 //------------------------------------------------------------------------------
-int vtkLacunaOccludedAngle::RequestUpdateExtent(
-  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector*)
+void vtkLacunaOccludedAngle::Ask(const lacuna::Ports& ports)
 {
-  using Pipeline = vtkStreamingDemandDrivenPipeline;
-  this->Meeting->AskForWhole(this, inputVector);
-  for (int port : { 0, 1 })
+  this->Algorithm::Ask(ports);
+  for (int port = 0; port < 2 && this->KeepIterations; ++port)
   {
-    for (int i = 0; i < inputVector[port]->GetNumberOfInformationObjects(); ++i)
+    // the time asked for is an iteration, not the input's time
+    if (vtkInformation* info = ports.GetInputInformation(port))
     {
-      vtkInformation* info = inputVector[port]->GetInformationObject(i);
-      if (this->KeepIterations) // the time asked for is an iteration, not the input's time
+      info->Remove(Pipeline::UPDATE_TIME_STEP());
+      if (info->Has(Pipeline::TIME_STEPS()) && info->Length(Pipeline::TIME_STEPS()) > 0)
       {
-        info->Remove(Pipeline::UPDATE_TIME_STEP());
-        if (info->Has(Pipeline::TIME_STEPS()) && info->Length(Pipeline::TIME_STEPS()) > 0)
-        {
-          info->Set(Pipeline::UPDATE_TIME_STEP(), info->Get(Pipeline::TIME_STEPS())[0]);
-        }
-        else if (info->Has(Pipeline::TIME_RANGE()))
-        {
-          info->Set(Pipeline::UPDATE_TIME_STEP(), info->Get(Pipeline::TIME_RANGE())[0]);
-        }
+        info->Set(Pipeline::UPDATE_TIME_STEP(), info->Get(Pipeline::TIME_STEPS())[0]);
+      }
+      else if (info->Has(Pipeline::TIME_RANGE()))
+      {
+        info->Set(Pipeline::UPDATE_TIME_STEP(), info->Get(Pipeline::TIME_RANGE())[0]);
       }
     }
   }
-  return 1;
 }
 
 //------------------------------------------------------------------------------
-int vtkLacunaOccludedAngle::RequestData(
-  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
+void vtkLacunaOccludedAngle::Make(const lacuna::Ports& ports, vtkLacunaExecution& execution)
 {
-  return vtkLacunaExecution::RunTogether(this, outputVector,
-    [&](vtkLacunaExecution& execution)
-    {
-      vtkImageData* input = vtkImageData::GetData(inputVector[0]);
-      vtkImageData* space = vtkImageData::GetData(inputVector[1]);
-      std::vector<double> times =
-        vtkLacunaRequest::GetTimes(this, inputVector[0]->GetInformationObject(0));
-      if (space)
-      {
-        const std::vector<double> more =
-          vtkLacunaRequest::GetTimes(this, inputVector[1]->GetInformationObject(0));
-        times.insert(times.end(), more.begin(), more.end());
-      }
-      const vtkLacunaRanks ranks;
-      // Ranks meet when something has changed. Later they may be asked for other parts one by one.
-      const bool keep = this->KeepIterations || ranks.GetNumber() > 1;
-      if (!keep)
-      {
-        this->Meeting->Forget();
-      }
-      std::vector<vtkSmartPointer<vtkImageData>> iterations;
-      const bool hasData = input && input->GetNumberOfPoints() > 0;
-      const auto make = [&]
-      {
-        this->Iterations.clear();
-        std::unique_ptr<Run> run;
-        ranks.Together([&] { run = std::make_unique<Run>(this, input, space, execution); });
-        iterations = run->GetIterations(execution, ranks);
-      };
-      if (!this->Meeting->Hold(this, times, hasData, ranks, make))
-      {
-        iterations = this->Iterations;
-      }
-      if (keep)
-      {
-        this->Iterations = iterations;
-      }
-      std::size_t chosen = iterations.size() - 1;
-      vtkInformation* info = outputVector->GetInformationObject(0);
-      vtkImageData* output = vtkImageData::GetData(outputVector);
-      if (this->KeepIterations)
-      {
-        if (info->Has(vtkStreamingDemandDrivenPipeline::UPDATE_TIME_STEP()))
-        {
-          const double step = info->Get(vtkStreamingDemandDrivenPipeline::UPDATE_TIME_STEP());
-          const double last = static_cast<double>(iterations.size());
-          // the first one for what is no number, too
-          chosen = step >= 1 ? static_cast<std::size_t>(std::min(std::floor(step), last)) - 1 : 0;
-        }
-      }
-      output->ShallowCopy(iterations[chosen]);
-      if (this->KeepIterations)
-      {
-        output->GetInformation()->Set(
-          vtkDataObject::DATA_TIME_STEP(), static_cast<double>(chosen) + 1);
-      }
-      else if (input->GetInformation()->Has(vtkDataObject::DATA_TIME_STEP()))
-      {
-        output->GetInformation()->Set(vtkDataObject::DATA_TIME_STEP(),
-          input->GetInformation()->Get(vtkDataObject::DATA_TIME_STEP()));
-      }
-      int extent[6];
-      info->Get(vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT(), extent);
-      output->Crop(extent);
-      std::vector<vtkDataObject*> inputs{ input };
-      if (space)
-      {
-        inputs.push_back(space);
-      }
-      vtkLacunaProvenance::Record(output, this, inputs, Run::GetParameters(*this));
-    });
+  auto* input = ports.GetInput<vtkImageData>();
+  // Ranks that have worked together may be asked for other parts one by one.
+  const bool keep = this->KeepIterations || vtkLacunaRanks().GetNumber() > 1;
+  const std::vector<double> times = this->GetTimes();
+  if (!keep || this->Made != times)
+  {
+    this->Made.clear();
+    this->Iterations.clear();
+    std::unique_ptr<Run> run;
+    ports.Ranks.Together([&]
+      { run = std::make_unique<Run>(this, input, ports.GetInput<vtkImageData>(1), execution); });
+    this->Iterations = run->GetIterations(execution, ports.Ranks);
+    this->Made = times;
+  }
+  std::size_t chosen = this->Iterations.size() - 1;
+  vtkInformation* info = ports.GetOutputInformation();
+  if (this->KeepIterations && info->Has(Pipeline::UPDATE_TIME_STEP()))
+  {
+    const double step = info->Get(Pipeline::UPDATE_TIME_STEP());
+    const double last = static_cast<double>(this->Iterations.size());
+    // the first one for what is no number, too
+    chosen = step >= 1 ? static_cast<std::size_t>(std::min(std::floor(step), last)) - 1 : 0;
+  }
+  auto* output = ports.GetOutput<vtkImageData>();
+  output->ShallowCopy(this->Iterations[chosen]);
+  if (this->KeepIterations)
+  {
+    output->GetInformation()->Set(vtkDataObject::DATA_TIME_STEP(), static_cast<double>(chosen) + 1);
+  }
+  else if (input->GetInformation()->Has(vtkDataObject::DATA_TIME_STEP()))
+  {
+    output->GetInformation()->Set(vtkDataObject::DATA_TIME_STEP(),
+      input->GetInformation()->Get(vtkDataObject::DATA_TIME_STEP()));
+  }
+  if (!keep)
+  {
+    this->Iterations.clear();
+  }
+}
+
+//------------------------------------------------------------------------------
+std::string vtkLacunaOccludedAngle::Parameters(int) const
+{
+  lacuna::ParameterText parameters;
+  parameters.Add("ScalarArray", this->ScalarArray)
+    .Add("Mode", this->Mode == BINARY ? "Binary" : "Continuous")
+    .Add("Attenuation", this->Attenuation)
+    .Add("NumberOfDirections", this->NumberOfDirections)
+    .Add("ThresholdsOverPi", this->ThresholdsOverPi)
+    .Add("LocalRadii", this->LocalRadii)
+    .Add("ObjectOpacity", this->ObjectOpacity)
+    .Add("Dilation", this->Dilation)
+    .Add("KeepData", this->KeepData)
+    .Add("MedianKernel", this->MedianKernel);
+  if (this->Attenuation == OPACITY_FUNCTION)
+  {
+    parameters.Add("OpacityFunction", GetNodes(this->OpacityFunction));
+  }
+  return parameters
+    .Add("ReconstructionSpace", vtkLacunaFunctionText::Describe(this->ReconstructionSpace))
+    .Get();
 }
 
 //------------------------------------------------------------------------------

@@ -32,26 +32,24 @@
 #define vtkLacunaOccludedAngle_h
 
 #include "vtkImageAlgorithm.h"
+#include "vtkLacunaAlgorithm.h"
 #include "vtkLacunaFiltersOcclusionModule.h" // for export macro
-#include "vtkLacunaVersionCompat.h"          // for stops
 #include "vtkSmartPointer.h"                 // for ownership
 
-#include <memory> // for ownership
 #include <string> // for the array's name
 #include <vector> // for the schedule
 
 class vtkImageData;
 class vtkImplicitFunction;
-class vtkLacunaMeeting;
 class vtkPiecewiseFunction;
 
-class VTKLACUNAFILTERSOCCLUSION_EXPORT vtkLacunaOccludedAngle : public vtkImageAlgorithm
+class VTKLACUNAFILTERSOCCLUSION_EXPORT vtkLacunaOccludedAngle
+  : public vtkLacunaAlgorithmOf(vtkImageAlgorithm)
 {
 public:
   static vtkLacunaOccludedAngle* New();
   vtkTypeMacro(vtkLacunaOccludedAngle, vtkImageAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
-  vtkLacunaKeepTimeAtStops();
 
   enum Modes
   {
@@ -176,9 +174,10 @@ protected:
   vtkLacunaOccludedAngle();
   ~vtkLacunaOccludedAngle() override;
   int FillInputPortInformation(int port, vtkInformation* info) override;
-  int RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
-  int RequestUpdateExtent(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
-  int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
+  void Announce(const lacuna::Ports& ports) override;
+  void Ask(const lacuna::Ports& ports) override;
+  void Make(const lacuna::Ports& ports, vtkLacunaExecution& execution) override;
+  std::string Parameters(int port) const override;
 
   std::string ScalarArray;
   int Mode = CONTINUOUS;
@@ -202,6 +201,6 @@ private:
 
   /// The iterations kept (the last one for ranks), and when they were made.
   std::vector<vtkSmartPointer<vtkImageData>> Iterations;
-  std::unique_ptr<vtkLacunaMeeting> Meeting;
+  std::vector<double> Made;
 };
 #endif

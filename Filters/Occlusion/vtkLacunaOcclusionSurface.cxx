@@ -11,14 +11,10 @@
 #include "vtkFlyingEdges3D.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
-#include "vtkInformationVector.h"
 #include "vtkLacunaArrays.h"
-#include "vtkLacunaExecution.h"
 #include "vtkLacunaFieldData.h"
 #include "vtkLacunaOccludedAngle.h"
 #include "vtkLacunaOcclusionInput.h"
-#include "vtkLacunaProvenance.h"
-#include "vtkLacunaRequest.h"
 #include "vtkLacunaVolumeDirection.h"
 #include "vtkMatrix3x3.h"
 #include "vtkNew.h"
@@ -27,7 +23,6 @@
 #include "vtkPolyData.h"
 #include "vtkPolyDataConnectivityFilter.h"
 #include "vtkSmartPointer.h"
-#include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkUnsignedCharArray.h"
 
 #include <cmath>
@@ -181,6 +176,9 @@ void SetPoints(vtkPolyData* surface, const std::vector<Point>& points,
 //------------------------------------------------------------------------------
 vtkLacunaOcclusionSurface::vtkLacunaOcclusionSurface()
 {
+  this->Sharing = lacuna::Share::FirstRank;
+  this->TakesEmpty = true; // an error
+  this->TakesBlocks = true;
   this->SetNumberOfInputPorts(2);
 }
 
@@ -197,111 +195,99 @@ int vtkLacunaOcclusionSurface::FillInputPortInformation(int, vtkInformation* inf
 }
 
 //------------------------------------------------------------------------------
-int vtkLacunaOcclusionSurface::RequestUpdateExtent(
-  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
+void vtkLacunaOcclusionSurface::Make(const lacuna::Ports& ports, vtkLacunaExecution& execution)
 {
-  for (int port : { 0, 1 })
+  vtkImageData* angle = ports.GetInput<vtkImageData>();
+  vtkImageData* image = ports.GetInput<vtkImageData>(1);
+  const vtkLacunaOcclusionInput::Grid grid(angle);
+  if (grid.Axes != 3)
   {
-    vtkLacunaRequest::Whole(this, inputVector[port]->GetInformationObject(0), outputVector);
+    throw std::runtime_error("the angle image is flat; the surface of a 3-D image is made");
   }
-  return 1;
+  if (!vtkLacunaOcclusionInput::SamePlace(angle, image))
+  {
+    throw std::runtime_error("the data (second input) have other voxels than the angle image; "
+                             "connect the image that Occluded Angle was given");
+  }
+  const auto* theta = FindArray<vtkFloatArray>(angle, "OccludedAngle");
+  const auto* object = FindArray<vtkUnsignedCharArray>(angle, "Object");
+  lacuna::RequireMemory("the surface of " + std::to_string(grid.GetSize()) + " voxels",
+    24.0 * static_cast<double>(grid.GetSize()));
+  const std::vector<unsigned char> data = FindData(image, grid, this->ScalarArray, execution);
+  const lacuna::OcclusionImages images{ grid.Dimensions, grid.Spacing,
+    const_cast<vtkFloatArray*>(theta)->GetPointer(0),
+    const_cast<vtkUnsignedCharArray*>(object)->GetPointer(0), data.data() };
+  lacuna::OcclusionSurfaceOptions options;
+  options.Smoothing = this->Smoothing;
+  options.Tolerance = this->Tolerance;
+  execution.SetStage(0, 0.85);
+  const lacuna::OcclusionSurface fit(execution, images, options);
+  execution.SetStage(0.85, 0.95);
+  const std::vector<float> values = fit.EvaluateGrid(execution);
+  vtkSmartPointer<vtkPolyData> surface = FindContour(values, grid);
+  std::vector<Point> points(surface->GetNumberOfPoints());
+  for (std::size_t i = 0; i < points.size(); ++i)
+  {
+    surface->GetPoint(static_cast<vtkIdType>(i), points[i].data());
+  }
+  std::vector<Point> normals;
+  execution.SetStage(0.95, 1);
+  fit.Project(execution, points, normals);
+
+  auto* output = ports.GetOutput<vtkPolyData>();
+  output->SetPolys(surface->GetPolys());
+  SetPoints(output, points, normals, angle);
+  Measures measures(output);
+  if (measures.Volume < 0)
+  {
+    ReverseTriangles(output);
+    measures.Volume = -measures.Volume;
+  }
+  vtkLacunaVolumeDirection::Remove(output);
+  const lacuna::OcclusionSurfaceReport& report = fit.GetReport();
+  const double edge = std::cbrt(grid.Spacing[0] * grid.Spacing[1] * grid.Spacing[2]);
+  if (report.Residual > 0.45 * edge || report.Outliers > report.DataVoxels)
+  {
+    vtkWarningMacro(<< "the surface may be wrong: " << report.Outliers << " of "
+                    << report.Outliers + report.DataVoxels
+                    << " data voxels are outliers, the others are " << report.Residual / edge
+                    << " voxel edges from it (root mean square; 0.3 is usual). Data must be "
+                       "voxels of the surface, not of the body's inside: use "
+                       "lacuna.occlusion.closed_surface for these");
+  }
+  if (report.Together > 0)
+  {
+    double place[3];
+    const int* extent = angle->GetExtent();
+    const std::int64_t all = report.Outliers + report.DataVoxels;
+    angle->TransformIndexToPhysicalPoint(static_cast<int>(extent[0] + report.TogetherAt[0]),
+      static_cast<int>(extent[2] + report.TogetherAt[1]),
+      static_cast<int>(extent[4] + report.TogetherAt[2]), place);
+    vtkWarningMacro(<< report.Together << " of " << all << " data voxels ("
+                    << std::lround(
+                         100.0 * static_cast<double>(report.Together) / static_cast<double>(all))
+                    << " %) are not used though they lie together, as the wall of a cavity or "
+                    << "bore does, the most around (" << place[0] << ", " << place[1] << ", "
+                    << place[2] << "): the surface closes it, and its volume is too large. If "
+                    << "it is one, use lacuna.occlusion.closed_surface");
+  }
+  const auto set = [output](const char* name, double value)
+  { vtkLacunaFieldData::Set(output, name, { value }, 1); };
+  set("SurfaceVolume", measures.Volume / 1000);
+  set("SurfaceArea", measures.Area);
+  set("DataVoxels", static_cast<double>(report.DataVoxels));
+  set("Outliers", static_cast<double>(report.Outliers));
+  set("Residual", report.Residual);
 }
 
 //------------------------------------------------------------------------------
-int vtkLacunaOcclusionSurface::RequestData(
-  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
+std::string vtkLacunaOcclusionSurface::Parameters(int) const
 {
-  const bool isWanted = vtkLacunaRequest::IsWanted(outputVector); // it is made in one piece
-  return vtkLacunaExecution::RunAgreed(this, outputVector, isWanted,
-    [&](vtkLacunaExecution& execution)
-    {
-      vtkImageData* angle = vtkImageData::GetData(inputVector[0]);
-      vtkImageData* image = vtkImageData::GetData(inputVector[1]);
-      const vtkLacunaOcclusionInput::Grid grid(angle);
-      if (grid.Axes != 3)
-      {
-        throw std::runtime_error("the angle image is flat; the surface of a 3-D image is made");
-      }
-      if (!vtkLacunaOcclusionInput::SamePlace(angle, image))
-      {
-        throw std::runtime_error("the data (second input) have other voxels than the angle image; "
-                                 "connect the image that Occluded Angle was given");
-      }
-      const auto* theta = FindArray<vtkFloatArray>(angle, "OccludedAngle");
-      const auto* object = FindArray<vtkUnsignedCharArray>(angle, "Object");
-      lacuna::RequireMemory("the surface of " + std::to_string(grid.GetSize()) + " voxels",
-        24.0 * static_cast<double>(grid.GetSize()));
-      const std::vector<unsigned char> data = FindData(image, grid, this->ScalarArray, execution);
-      const lacuna::OcclusionImages images{ grid.Dimensions, grid.Spacing,
-        const_cast<vtkFloatArray*>(theta)->GetPointer(0),
-        const_cast<vtkUnsignedCharArray*>(object)->GetPointer(0), data.data() };
-      lacuna::OcclusionSurfaceOptions options;
-      options.Smoothing = this->Smoothing;
-      options.Tolerance = this->Tolerance;
-      execution.SetStage(0, 0.85);
-      const lacuna::OcclusionSurface fit(execution, images, options);
-      execution.SetStage(0.85, 0.95);
-      const std::vector<float> values = fit.EvaluateGrid(execution);
-      vtkSmartPointer<vtkPolyData> surface = FindContour(values, grid);
-      std::vector<Point> points(surface->GetNumberOfPoints());
-      for (std::size_t i = 0; i < points.size(); ++i)
-      {
-        surface->GetPoint(static_cast<vtkIdType>(i), points[i].data());
-      }
-      std::vector<Point> normals;
-      execution.SetStage(0.95, 1);
-      fit.Project(execution, points, normals);
-
-      vtkPolyData* output = vtkPolyData::GetData(outputVector);
-      output->SetPolys(surface->GetPolys());
-      SetPoints(output, points, normals, angle);
-      Measures measures(output);
-      if (measures.Volume < 0)
-      {
-        ReverseTriangles(output);
-        measures.Volume = -measures.Volume;
-      }
-      vtkLacunaVolumeDirection::Remove(output);
-      const lacuna::OcclusionSurfaceReport& report = fit.GetReport();
-      const double edge = std::cbrt(grid.Spacing[0] * grid.Spacing[1] * grid.Spacing[2]);
-      if (report.Residual > 0.45 * edge || report.Outliers > report.DataVoxels)
-      {
-        vtkWarningMacro(<< "the surface may be wrong: " << report.Outliers << " of "
-                        << report.Outliers + report.DataVoxels
-                        << " data voxels are outliers, the others are " << report.Residual / edge
-                        << " voxel edges from it (root mean square; 0.3 is usual). Data must be "
-                           "voxels of the surface, not of the body's inside: use "
-                           "lacuna.occlusion.closed_surface for these");
-      }
-      if (report.Together > 0)
-      {
-        double place[3];
-        const int* extent = angle->GetExtent();
-        const std::int64_t all = report.Outliers + report.DataVoxels;
-        angle->TransformIndexToPhysicalPoint(static_cast<int>(extent[0] + report.TogetherAt[0]),
-          static_cast<int>(extent[2] + report.TogetherAt[1]),
-          static_cast<int>(extent[4] + report.TogetherAt[2]), place);
-        vtkWarningMacro(<< report.Together << " of " << all << " data voxels ("
-                        << std::lround(100.0 * static_cast<double>(report.Together) /
-                             static_cast<double>(all))
-                        << " %) are not used though they lie together, as the wall of a cavity or "
-                        << "bore does, the most around (" << place[0] << ", " << place[1] << ", "
-                        << place[2] << "): the surface closes it, and its volume is too large. If "
-                        << "it is one, use lacuna.occlusion.closed_surface");
-      }
-      const auto set = [output](const char* name, double value)
-      { vtkLacunaFieldData::Set(output, name, { value }, 1); };
-      set("SurfaceVolume", measures.Volume / 1000);
-      set("SurfaceArea", measures.Area);
-      set("DataVoxels", static_cast<double>(report.DataVoxels));
-      set("Outliers", static_cast<double>(report.Outliers));
-      set("Residual", report.Residual);
-      lacuna::ParameterText parameters;
-      parameters.Add("ScalarArray", this->ScalarArray)
-        .Add("Smoothing", this->Smoothing)
-        .Add("Tolerance", this->Tolerance);
-      vtkLacunaProvenance::Record(output, this, { angle, image }, parameters.Get());
-    });
+  return lacuna::ParameterText()
+    .Add("ScalarArray", this->ScalarArray)
+    .Add("Smoothing", this->Smoothing)
+    .Add("Tolerance", this->Tolerance)
+    .Get();
 }
 
 //------------------------------------------------------------------------------

@@ -26,19 +26,19 @@
 #ifndef vtkLacunaOcclusionSurface_h
 #define vtkLacunaOcclusionSurface_h
 
+#include "vtkLacunaAlgorithm.h"
 #include "vtkLacunaFiltersOcclusionModule.h" // for export macro
-#include "vtkLacunaVersionCompat.h"          // for stops
 #include "vtkPolyDataAlgorithm.h"
 
 #include <string> // for the array's name
 
-class VTKLACUNAFILTERSOCCLUSION_EXPORT vtkLacunaOcclusionSurface : public vtkPolyDataAlgorithm
+class VTKLACUNAFILTERSOCCLUSION_EXPORT vtkLacunaOcclusionSurface
+  : public vtkLacunaAlgorithmOf(vtkPolyDataAlgorithm)
 {
 public:
   static vtkLacunaOcclusionSurface* New();
   vtkTypeMacro(vtkLacunaOcclusionSurface, vtkPolyDataAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
-  vtkLacunaKeepTimeAtStops();
 
   ///@{
   /// The point array of input 1 with the data. Default empty: the active scalars.
@@ -65,8 +65,8 @@ protected:
   vtkLacunaOcclusionSurface();
   ~vtkLacunaOcclusionSurface() override = default;
   int FillInputPortInformation(int port, vtkInformation* info) override;
-  int RequestUpdateExtent(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
-  int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
+  void Make(const lacuna::Ports& ports, vtkLacunaExecution& execution) override;
+  std::string Parameters(int port) const override;
 
   std::string ScalarArray;
   double Smoothing = 1;

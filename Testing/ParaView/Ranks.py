@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Every proxy of the plugin under MPI: ranks make the same as one alone, bit for bit, and what only the first rank can do costs the others nothing.
+"""Every proxy of the plugin under MPI: ranks make the same as one alone, bit for bit.
 
 Ranks.py NUMBERS as-they-are|modes [program that makes a CT series], with numbers of ranks like 2,3,4
 
@@ -8,8 +8,8 @@ here, put together again, with what one rank makes. modes: so is what each sourc
 enumerations and switches, one at a time; where that is an error all numbers of ranks have the same.
 """
 import itertools
-import json
 import os
+import re
 import shutil
 import sys
 
@@ -35,7 +35,7 @@ IMAGES = {"AssembleTrackedSlices", "BSplineIsoRayCaster", "CTSeriesReader", "Dep
 WHOLE = {"OccludedAngle", "ProbeCalibration"}
 # Some of the cells of a mesh
 MESHES = {"DepthMapSurface", "SlicePlanes"}
-# All of it on the first rank; the others make nothing, and ask nothing of what lies upstream
+# All of it on the first rank; the others make nothing
 FIRST = {"ContrastToSpeckle", "DefectModel", "ImplantPlate", "MillingToolPath", "OcclusionSurface", "OutlineReader", "OutlinedStructures",
          "PressOrientation", "RBFSurface", "ScanRegion", "SkullImplant", "SliceOutliner", "TemporalCalibration", "TrackerSelfTest"}
 WRITERS = {"GCodeWriter", "IGESWriter", "STEPWriter", "TrackedSliceWriter"}
@@ -44,12 +44,9 @@ REFUSED = {"PolhemusVideoSource"}
 
 # Provenance has the hash of what a rank was given, which for these is a part
 HASHED_PARTS = {"AssembleTrackedSlices", "DepthMapShader", "DepthMapSurface", "GateSlices", "SlicePlanes", "SpeckleFilter"}
-# Have their whole input on every rank, whatever is asked of them: the size of their output is in it, or all ranks work for it
-ALWAYS_ASK = {"BSplineIsoRayCaster", "Mirror", "OccludedAngle", "RBFImageWarp", "RBFInterpolator", "SliceRayCaster", "SweptVolume"}
 
-# In ParaView's Programmable Filter, on each rank: its piece as a file, and how much of its inputs it has.
+# In ParaView's Programmable Filter, on each rank: its piece as a file.
 WRITE = """
-import json
 from vtkmodules.vtkCommonCore import vtkObject
 from vtkmodules.vtkIOXML import vtkXMLDataObjectWriter
 from vtkmodules.vtkParallelCore import vtkMultiProcessController
@@ -64,26 +61,6 @@ for attributes in (data.GetAttributes(0), data.GetAttributes(1), data.GetFieldDa
 writer.SetInputData(data)
 writer.SetFileName({start!r} + str(rank))
 writer.Write()
-
-def elements(data):
-    return data.GetNumberOfRows() if data.IsA("vtkTable") else data.GetNumberOfPoints() if data.IsA("vtkDataSet") else 0
-
-def upstream(algorithm):
-    found = {{}}
-    for port in range(algorithm.GetNumberOfInputPorts()):
-        for i in range(algorithm.GetNumberOfInputConnections(port)):
-            other = algorithm.GetInputAlgorithm(port, i)
-            found[other] = other.GetClassName(), elements(algorithm.GetInputDataObject(port, i))
-            found.update(upstream(other))
-    return found
-
-everything = upstream(self)
-needed = set()
-for algorithm in everything:
-    if algorithm.GetClassName()[9:] in {always!r}:
-        needed |= set(upstream(algorithm))
-with open({start!r} + str(rank) + ".json", "w", encoding="ascii") as file:
-    json.dump([value for algorithm, value in everything.items() if algorithm not in needed], file)
 """
 
 
@@ -100,7 +77,7 @@ def folder(ranks):
 
 def write_outputs(source, start):
     for port in range(source.SMProxy.GetNumberOfOutputPorts()):
-        script = WRITE.format(start=f"{start}-{port}-", always=ALWAYS_ASK)
+        script = WRITE.format(start=f"{start}-{port}-")
         writer = ProgrammableFilter(Input=OutputPort(source, port), Script=script, CopyArrays=0)
         writer.UpdatePipeline()
         Delete(writer)
@@ -181,13 +158,11 @@ def read(file):
 
 
 def outputs(ranks):
-    """(pipeline, kind, name, port) -> the ranks' pieces, each with what it had upstream."""
+    """(pipeline, kind, name, port) -> the ranks' pieces."""
     found = {}
     for name in sorted(os.listdir(folder(ranks))):
-        if name.endswith(".json"):
-            file = os.path.join(folder(ranks), name[:-5])
-            with open(file + ".json", encoding="ascii") as text:
-                found.setdefault(tuple(name[:-5].split("-")[:4]), []).append((read(file), json.load(text)))
+        if re.fullmatch(r".*-\d+-\d+", name):
+            found.setdefault(tuple(name.split("-")[:4]), []).append(read(os.path.join(folder(ranks), name)))
     assert all(len(pieces) == ranks for key, pieces in found.items() if key[1] not in REFUSED)
     return found
 
@@ -260,17 +235,14 @@ def check_field_data(key, pieces):
                 assert np.array_equal(values, other[name], equal_nan=values.dtype.kind == "f"), (key, name)
 
 
-def check(key, alone, pieces, with_modes):
+def check(key, alone, data):
     what = key[1]
-    (one, _), = alone
-    data = [piece for piece, _ in pieces]
+    one, = alone
     if what in FIRST or one.IsA("vtkTable"):
         texts = pipelines.differences(one, data[0])
         assert not texts, (key, texts)
-        for piece, upstream in pieces[1:]:
+        for piece in data[1:]:
             assert sum(piece.GetNumberOfElements(kind) for kind in (0, 1, 6)) == 0, (key, "not on the first rank only")
-            # with modes upstream has what was asked of it for others before
-            assert with_modes or what not in FIRST or not any(count for _, count in upstream), (key, upstream)
     elif one.IsA("vtkPolyData"):
         assert join_mesh(data) == join_mesh([one]), key
         check_field_data(key, [one, *data])
@@ -310,7 +282,7 @@ def main():
     listed = IMAGES | MESHES | FIRST | WRITERS | REFUSED
     assert seen <= listed, f"not listed here: {sorted(seen - listed)}"
     empty = {what for _, what, _, _ in alone} - {
-        key[1] for key, pieces in alone.items() for data, _ in pieces if any(data.GetNumberOfElements(kind) for kind in (0, 1, 6))}
+        key[1] for key, pieces in alone.items() for data in pieces if any(data.GetNumberOfElements(kind) for kind in (0, 1, 6))}
     assert empty <= REFUSED, f"nothing to compare of {sorted(empty)}"
     faults = []
     for ranks in numbers:
@@ -322,7 +294,7 @@ def main():
                                         if one.get(name) != several.get(name) and name.endswith(".error")})
         for key in sorted(expected):
             try:
-                check(key, alone[key], together[key], with_modes)
+                check(key, alone[key], together[key])
             except AssertionError as fault:
                 faults.append(f"{ranks} ranks: {fault}")
     assert not faults, "\n".join(faults)
