@@ -7,17 +7,12 @@
 #include "vtkDataArray.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
-#include "vtkInformationVector.h"
 #include "vtkLacunaArrays.h"
 #include "vtkLacunaCoordinates.h"
 #include "vtkLacunaDepthMap.h"
-#include "vtkLacunaExecution.h"
 #include "vtkLacunaFieldData.h"
 #include "vtkLacunaFittedPart.h"
 #include "vtkLacunaPressPosition.h"
-#include "vtkLacunaProvenance.h"
-#include "vtkLacunaRanks.h"
-#include "vtkLacunaRequest.h"
 #include "vtkLacunaSolidMesh.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
@@ -111,6 +106,7 @@ void SetTop(vtkStructuredGrid* output, const lacuna::DefectModel& model,
 //------------------------------------------------------------------------------
 vtkLacunaDefectModel::vtkLacunaDefectModel()
 {
+  this->Sharing = lacuna::Share::FirstRank;
   this->SetNumberOfOutputPorts(2);
 }
 
@@ -129,112 +125,89 @@ int vtkLacunaDefectModel::FillOutputPortInformation(int port, vtkInformation* in
 }
 
 //------------------------------------------------------------------------------
-int vtkLacunaDefectModel::RequestInformation(
-  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
+void vtkLacunaDefectModel::Announce(const lacuna::Ports& ports)
 {
-  return vtkLacunaExecution::RunInformation(this, outputVector,
-    [&]
-    {
-      // the size of the grid depends on the defect
-      const bool first = vtkLacunaRequest::UpdateNowOnFirst(this);
-      int extent[6] = { 0, -1, 0, -1, 0, -1 };
-      vtkImageData* map = vtkImageData::GetData(inputVector[0]);
-      if (first && map && map->GetNumberOfPoints() > 0)
-      {
-        const Input input(map, this);
-        const auto plan = lacuna::PlanDefectModel(input.Scene, input.Options);
-        extent[1] = static_cast<int>(plan.Size.Columns) - 1;
-        extent[3] = static_cast<int>(plan.Size.Rows) - 1;
-        extent[5] = 0;
-      }
-      outputVector->GetInformationObject(1)->Set(
-        vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), extent, 6);
-    });
+  this->UpdateInput(ports); // the size of the grid depends on the defect
+  int extent[6] = { 0, -1, 0, -1, 0, -1 };
+  auto* map = ports.GetInput<vtkImageData>();
+  if (map && map->GetNumberOfPoints() > 0)
+  {
+    const Input input(map, this);
+    const auto plan = lacuna::PlanDefectModel(input.Scene, input.Options);
+    extent[1] = static_cast<int>(plan.Size.Columns) - 1;
+    extent[3] = static_cast<int>(plan.Size.Rows) - 1;
+    extent[5] = 0;
+  }
+  ports.GetOutputInformation(1)->Set(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), extent, 6);
 }
 
 //------------------------------------------------------------------------------
-int vtkLacunaDefectModel::RequestUpdateExtent(
-  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
+void vtkLacunaDefectModel::Make(const lacuna::Ports& ports, vtkLacunaExecution& execution)
 {
-  vtkLacunaRequest::WholeOnFirst(this, inputVector[0]->GetInformationObject(0), outputVector);
-  return 1;
-}
-
-//------------------------------------------------------------------------------
-int vtkLacunaDefectModel::RequestData(
-  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
-{
-  vtkImageData* map = vtkImageData::GetData(inputVector[0]);
-  vtkPolyData* solid = vtkPolyData::GetData(outputVector, 0);
-  vtkStructuredGrid* top = vtkStructuredGrid::GetData(outputVector, 1);
+  auto* map = ports.GetInput<vtkImageData>();
+  auto* solid = ports.GetOutput<vtkPolyData>();
+  auto* top = ports.GetOutput<vtkStructuredGrid>(1);
   // VTK passes the map's, whose ImageToWorld is not of these
   solid->GetFieldData()->Initialize();
   top->GetFieldData()->Initialize();
-  // the model is one piece
-  const bool isWanted = vtkLacunaRequest::IsWanted(outputVector) && vtkLacunaRanks().GetRank() == 0;
-  const auto body = [&](vtkLacunaExecution& execution)
+  const Input input(map, this);
+  execution.SetStage(0, 0.1);
+  const lacuna::ReliefSurface surface(
+    execution, input.Scene.Size, input.Scene.Fitted, input.Scene.Spacing);
+  execution.SetStage(0.1, 1);
+  lacuna::DefectModel model;
   {
-    if (!map || map->GetNumberOfPoints() == 0)
-    {
-      return; // empty in, empty out
-    }
-    const Input input(map, this);
-    execution.SetStage(0, 0.1);
-    const lacuna::ReliefSurface surface(
-      execution, input.Scene.Size, input.Scene.Fitted, input.Scene.Spacing);
-    execution.SetStage(0.1, 1);
-    lacuna::DefectModel model;
-    {
-      const lacuna::Execution::NestedStages nested(execution);
-      model =
-        lacuna::MakeDefectModel(execution, input.Scene, surface, input.Options, input.ToWorld);
-    }
-    for (const std::string& warning : model.Warnings)
-    {
-      vtkWarningMacro(<< warning);
-    }
-    const lacuna::Vec2& spacing = input.Scene.Spacing;
-    const auto middle = [](std::int64_t first, std::int64_t from, std::int64_t count, double step)
-    { return step * (static_cast<double>(first - from) + 0.5 * static_cast<double>(count - 1)); };
-    // x as the map's, y up, z towards the viewer: half a turn about x
-    const lacuna::Matrix4 fromPress =
-      lacuna::Matrix4::FromColumns({ 1, 0, 0 }, { 0, -1, 0 }, { 0, 0, -1 },
-        { middle(model.Column, input.Scene.Column, model.TopSize.Columns, spacing[0]),
-          middle(model.Row, input.Scene.Row, model.TopSize.Rows, spacing[1]), model.Highest });
-    int whole[6];
-    outputVector->GetInformationObject(1)->Get(
-      vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), whole);
-    if (whole[1] + 1 != model.TopSize.Columns || whole[3] + 1 != model.TopSize.Rows)
-    {
-      throw vtkLacunaGridChanged("the depth map has changed since the grid was announced (a source "
-                                 "that changes with time?); change a property and update again");
-    }
-    vtkLacunaSolidMesh::Set(solid, model, input.ToWorld, ModelFaceName);
-    SetTop(top, model, input.Scene, fromPress.Inverse());
+    const lacuna::Execution::NestedStages nested(execution);
+    model = lacuna::MakeDefectModel(execution, input.Scene, surface, input.Options, input.ToWorld);
+  }
+  for (const std::string& warning : model.Warnings)
+  {
+    vtkWarningMacro(<< warning);
+  }
+  const lacuna::Vec2& spacing = input.Scene.Spacing;
+  const auto middle = [](std::int64_t first, std::int64_t from, std::int64_t count, double step)
+  { return step * (static_cast<double>(first - from) + 0.5 * static_cast<double>(count - 1)); };
+  // x as the map's, y up, z towards the viewer: half a turn about x
+  const lacuna::Matrix4 fromPress =
+    lacuna::Matrix4::FromColumns({ 1, 0, 0 }, { 0, -1, 0 }, { 0, 0, -1 },
+      { middle(model.Column, input.Scene.Column, model.TopSize.Columns, spacing[0]),
+        middle(model.Row, input.Scene.Row, model.TopSize.Rows, spacing[1]), model.Highest });
+  int whole[6];
+  ports.GetOutputInformation(1)->Get(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), whole);
+  if (whole[1] + 1 != model.TopSize.Columns || whole[3] + 1 != model.TopSize.Rows)
+  {
+    throw std::runtime_error("the depth map has changed since the grid was announced (a source "
+                             "that changes with time?); change a property and update again");
+  }
+  vtkLacunaSolidMesh::Set(solid, model, input.ToWorld, ModelFaceName);
+  SetTop(top, model, input.Scene, fromPress.Inverse());
 
-    vtkLacunaCoordinates::MarkPress(map, top);
-    lacuna::ParameterText parameters;
-    parameters.Add("Margin", this->Margin)
-      .Add("FloorShape", this->FloorShape)
-      .Add("DefectDepth", this->DefectDepth)
-      .Add("BaseThickness", this->BaseThickness)
-      .Add("MaximumHeight", this->MaximumHeight);
-    const lacuna::Matrix4 toPatient = input.ToWorld * fromPress;
-    for (vtkDataObject* output :
-      { static_cast<vtkDataObject*>(solid), static_cast<vtkDataObject*>(top) })
-    {
-      vtkLacunaFieldData::SetMatrices(output, PressToPatientName, { toPatient });
-      vtkLacunaFieldData::Set(output, "BlockSize",
-        { spacing[0] * static_cast<double>(model.TopSize.Columns - 1),
-          spacing[1] * static_cast<double>(model.TopSize.Rows - 1), model.Bottom - model.Highest },
-        3);
-      vtkLacunaFieldData::Set(output, "FloorHeight", { model.Highest - model.Base }, 1);
-      vtkLacunaFieldData::Set(output, "Volume", { model.Volume }, 1);
-      vtkLacunaFieldData::Set(output, "DefectCount", { static_cast<double>(model.Defects) }, 1);
-      vtkLacunaProvenance::Record(output, this, { map }, parameters.Get());
-    }
-  };
-  return vtkLacunaExecution::RunAgreed(this, outputVector, isWanted, body);
+  vtkLacunaCoordinates::MarkPress(map, top);
+  const lacuna::Matrix4 toPatient = input.ToWorld * fromPress;
+  for (vtkDataObject* output :
+    { static_cast<vtkDataObject*>(solid), static_cast<vtkDataObject*>(top) })
+  {
+    vtkLacunaFieldData::SetMatrices(output, PressToPatientName, { toPatient });
+    vtkLacunaFieldData::Set(output, "BlockSize",
+      { spacing[0] * static_cast<double>(model.TopSize.Columns - 1),
+        spacing[1] * static_cast<double>(model.TopSize.Rows - 1), model.Bottom - model.Highest },
+      3);
+    vtkLacunaFieldData::Set(output, "FloorHeight", { model.Highest - model.Base }, 1);
+    vtkLacunaFieldData::Set(output, "Volume", { model.Volume }, 1);
+    vtkLacunaFieldData::Set(output, "DefectCount", { static_cast<double>(model.Defects) }, 1);
+  }
+}
+
+//------------------------------------------------------------------------------
+std::string vtkLacunaDefectModel::Parameters(int) const
+{
+  return lacuna::ParameterText()
+    .Add("Margin", this->Margin)
+    .Add("FloorShape", this->FloorShape)
+    .Add("DefectDepth", this->DefectDepth)
+    .Add("BaseThickness", this->BaseThickness)
+    .Add("MaximumHeight", this->MaximumHeight)
+    .Get();
 }
 
 //------------------------------------------------------------------------------

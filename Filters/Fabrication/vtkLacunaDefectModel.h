@@ -38,17 +38,17 @@
 #ifndef vtkLacunaDefectModel_h
 #define vtkLacunaDefectModel_h
 
+#include "vtkLacunaAlgorithm.h"
 #include "vtkLacunaFiltersFabricationModule.h" // for export macro
-#include "vtkLacunaVersionCompat.h"            // for stops
 #include "vtkPolyDataAlgorithm.h"
 
-class VTKLACUNAFILTERSFABRICATION_EXPORT vtkLacunaDefectModel : public vtkPolyDataAlgorithm
+class VTKLACUNAFILTERSFABRICATION_EXPORT vtkLacunaDefectModel
+  : public vtkLacunaAlgorithmOf(vtkPolyDataAlgorithm)
 {
 public:
   static vtkLacunaDefectModel* New();
   vtkTypeMacro(vtkLacunaDefectModel, vtkPolyDataAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
-  vtkLacunaKeepTimeAtStops();
 
   static constexpr const char* ModelFaceName = "ModelFace";
   static constexpr const char* PressToPatientName = "PressToPatient";
@@ -91,9 +91,9 @@ protected:
   ~vtkLacunaDefectModel() override = default;
   int FillInputPortInformation(int port, vtkInformation* info) override;
   int FillOutputPortInformation(int port, vtkInformation* info) override;
-  int RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
-  int RequestUpdateExtent(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
-  int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
+  void Announce(const lacuna::Ports& ports) override;
+  void Make(const lacuna::Ports& ports, vtkLacunaExecution& execution) override;
+  std::string Parameters(int port) const override;
 
 private:
   vtkLacunaDefectModel(const vtkLacunaDefectModel&) = delete;

@@ -9,7 +9,6 @@
 #include "vtkCellArray.h"
 #include "vtkCellArrayIterator.h"
 #include "vtkDataArray.h"
-#include "vtkErrorCode.h"
 #include "vtkInformation.h"
 #include "vtkLacunaExecution.h"
 #include "vtkLacunaFieldData.h"
@@ -17,7 +16,6 @@
 #include "vtkLacunaMirrored.h"
 #include "vtkLacunaPressPosition.h"
 #include "vtkLacunaProvenance.h"
-#include "vtkLacunaWriting.h"
 #include "vtkLogger.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
@@ -187,7 +185,7 @@ std::vector<std::string> GetWarnings(vtkPolyData* path)
 }
 
 // The question before a program with warnings is written.
-std::string Ask(const std::vector<std::string>& warnings)
+std::string DescribeRefusal(const std::vector<std::string>& warnings)
 {
   std::string text = "nothing is written, since there is a warning";
   for (const std::string& warning : warnings)
@@ -223,42 +221,21 @@ int vtkLacunaGCodeWriter::FillInputPortInformation(int, vtkInformation* info)
 }
 
 //------------------------------------------------------------------------------
-int vtkLacunaGCodeWriter::ProcessRequest(
-  vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
+void vtkLacunaGCodeWriter::ClearResults()
 {
-  return vtkLacunaWriting::AskForWhole(this, this->Piece, request, inputs)
-    ? 1
-    : this->Superclass::ProcessRequest(request, inputs, outputs);
-}
-
-//------------------------------------------------------------------------------
-int vtkLacunaGCodeWriter::Write()
-{
-  this->FileSize = 0;
-  this->Superclass::Write();
-  this->SetErrorCode(vtkLacunaWriting::Check(this, this->FileSize > 0 || this->Piece > 0));
-  return this->GetErrorCode() == vtkErrorCode::NoError ? 1 : 0;
-}
-
-//------------------------------------------------------------------------------
-void vtkLacunaGCodeWriter::WriteData()
-{
-  this->FileSize = 0;
+  this->Superclass::ClearResults();
   this->NumberOfBlocks = 0;
-  if (this->Piece > 0)
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaGCodeWriter::WriteFile()
+{
+  auto* path = vtkPolyData::SafeDownCast(this->GetInput());
+  if (!path || path->GetNumberOfLines() == 0)
   {
-    return; // another process writes
+    throw std::runtime_error("the input has no poly lines");
   }
-  this->SetErrorCode(vtkLacunaWriting::Run(this, this->FileName,
-    [this]
-    {
-      auto* path = vtkPolyData::SafeDownCast(this->GetInput());
-      if (!path || path->GetNumberOfLines() == 0)
-      {
-        throw std::runtime_error("the input has no poly lines");
-      }
-      this->WriteProgram(path);
-    }));
+  this->WriteProgram(path);
 }
 
 //------------------------------------------------------------------------------
@@ -339,7 +316,7 @@ void vtkLacunaGCodeWriter::WriteProgram(vtkPolyData* path)
   all.insert(all.end(), warnings.begin(), warnings.end());
   if (!all.empty() && !this->AcceptWarnings)
   {
-    throw std::runtime_error(Ask(all));
+    throw std::runtime_error(DescribeRefusal(all));
   }
   execution.SetStage(0.9, 1);
   execution.Report(0);

@@ -27,20 +27,19 @@
 #define vtkLacunaGCodeWriter_h
 
 #include "vtkLacunaFiltersFabricationModule.h" // for export macro
-#include "vtkWriter.h"
+#include "vtkLacunaWriter.h"
 
 class vtkPolyData;
 
-class VTKLACUNAFILTERSFABRICATION_EXPORT vtkLacunaGCodeWriter : public vtkWriter
+class VTKLACUNAFILTERSFABRICATION_EXPORT vtkLacunaGCodeWriter : public vtkLacunaWriter
 {
 public:
   static vtkLacunaGCodeWriter* New();
-  vtkTypeMacro(vtkLacunaGCodeWriter, vtkWriter);
+  vtkTypeMacro(vtkLacunaGCodeWriter, vtkLacunaWriter);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   /** Updates the input and writes. Returns 1, or 0 when there is no new file, also because a filter
    * before this one failed. */
-  int Write() override;
 
   ///@{
   /** The file to write, usually *.nc or *.gcode. */
@@ -130,9 +129,8 @@ protected:
   ~vtkLacunaGCodeWriter() override;
 
   int FillInputPortInformation(int port, vtkInformation* info) override;
-  int ProcessRequest(
-    vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
-  void WriteData() override;
+  void WriteFile() override;
+  void ClearResults() override;
 
 private:
   vtkLacunaGCodeWriter(const vtkLacunaGCodeWriter&) = delete;
@@ -140,7 +138,6 @@ private:
 
   void WriteProgram(vtkPolyData* path);
 
-  char* FileName = nullptr;
   int ProgramNumber = 1;
   int ToolNumber = 1;
   int WorkOffset = 54;
@@ -152,9 +149,6 @@ private:
   bool AllowMirrored = false;
   char* Header = nullptr;
   char* Footer = nullptr;
-  int Piece = 0;
-  int NumberOfPieces = 1;
-  vtkTypeInt64 FileSize = 0;
   vtkTypeInt64 NumberOfBlocks = 0;
 };
 #endif

@@ -5,12 +5,10 @@
 #include "lacunaIGESDocument.h"
 #include "lacunaParameterText.h"
 #include "lacunaPrintableText.h"
-#include "vtkErrorCode.h"
 #include "vtkInformation.h"
 #include "vtkLacunaExecution.h"
 #include "vtkLacunaIGESContent.h"
 #include "vtkLacunaProvenance.h"
-#include "vtkLacunaWriting.h"
 #include "vtkLogger.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
@@ -166,45 +164,16 @@ int vtkLacunaIGESWriter::FillInputPortInformation(int, vtkInformation* info)
 }
 
 //------------------------------------------------------------------------------
-int vtkLacunaIGESWriter::ProcessRequest(
-  vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
-{
-  return vtkLacunaWriting::AskForWhole(this, this->Piece, request, inputs)
-    ? 1
-    : this->Superclass::ProcessRequest(request, inputs, outputs);
-}
-
-//------------------------------------------------------------------------------
-int vtkLacunaIGESWriter::Write()
-{
-  this->FileSize = 0;
-  this->Superclass::Write();
-  this->SetErrorCode(vtkLacunaWriting::Check(this, this->FileSize > 0 || this->Piece > 0));
-  return this->GetErrorCode() == vtkErrorCode::NoError ? 1 : 0;
-}
-
-//------------------------------------------------------------------------------
-void vtkLacunaIGESWriter::WriteData()
-{
-  this->ClearResults();
-  if (this->Piece > 0)
-  {
-    return; // another process writes
-  }
-  this->SetErrorCode(vtkLacunaWriting::Run(this, this->FileName, [this] { this->WriteContent(); }));
-}
-
-//------------------------------------------------------------------------------
 void vtkLacunaIGESWriter::ClearResults()
 {
+  this->Superclass::ClearResults();
   this->MaximumDeviation = 0;
   this->NumberOfControlPoints[0] = this->NumberOfControlPoints[1] = 0;
   this->NumberOfSurfaces = this->NumberOfCurves = this->NumberOfPoints = 0;
-  this->FileSize = 0;
 }
 
 //------------------------------------------------------------------------------
-void vtkLacunaIGESWriter::WriteContent()
+void vtkLacunaIGESWriter::WriteFile()
 {
   vtkDataObject* input = this->GetInput();
   if (!input)

@@ -50,18 +50,17 @@
 #define vtkLacunaIGESWriter_h
 
 #include "vtkLacunaFiltersFabricationModule.h" // for export macro
-#include "vtkWriter.h"
+#include "vtkLacunaWriter.h"
 
-class VTKLACUNAFILTERSFABRICATION_EXPORT vtkLacunaIGESWriter : public vtkWriter
+class VTKLACUNAFILTERSFABRICATION_EXPORT vtkLacunaIGESWriter : public vtkLacunaWriter
 {
 public:
   static vtkLacunaIGESWriter* New();
-  vtkTypeMacro(vtkLacunaIGESWriter, vtkWriter);
+  vtkTypeMacro(vtkLacunaIGESWriter, vtkLacunaWriter);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   /** Updates the input and writes. Returns 1, or 0 when there is no new file, also because a filter
    * before this one failed. */
-  int Write() override;
 
   ///@{
   /** The file to write, usually *.igs or *.iges. */
@@ -142,30 +141,22 @@ protected:
   ~vtkLacunaIGESWriter() override;
 
   int FillInputPortInformation(int port, vtkInformation* info) override;
-  int ProcessRequest(
-    vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
-  void WriteData() override;
+  void WriteFile() override;
+  void ClearResults() override;
 
 private:
   vtkLacunaIGESWriter(const vtkLacunaIGESWriter&) = delete;
   void operator=(const vtkLacunaIGESWriter&) = delete;
 
-  void ClearResults();
-  void WriteContent();
-
-  char* FileName = nullptr;
   double Tolerance = 0.001;
   int DefectOutline = Curve;
   int Coordinates = AsGiven;
   bool AllowMirrored = false;
   bool SkipUnsupported = false;
-  int Piece = 0;
-  int NumberOfPieces = 1;
   double MaximumDeviation = 0;
   int NumberOfControlPoints[2] = { 0, 0 };
   int NumberOfSurfaces = 0;
   int NumberOfCurves = 0;
   int NumberOfPoints = 0;
-  vtkTypeInt64 FileSize = 0;
 };
 #endif

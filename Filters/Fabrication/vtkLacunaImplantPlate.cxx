@@ -6,19 +6,14 @@
 #include "vtkDataArray.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
-#include "vtkInformationVector.h"
 #include "vtkLacunaArrays.h"
-#include "vtkLacunaExecution.h"
 #include "vtkLacunaFieldData.h"
 #include "vtkLacunaFittedPart.h"
-#include "vtkLacunaProvenance.h"
-#include "vtkLacunaRequest.h"
 #include "vtkLacunaSolidMesh.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
 #include "vtkPointSet.h"
 #include "vtkPolyData.h"
-#include "vtkStreamingDemandDrivenPipeline.h"
 
 #include <algorithm>
 #include <cmath>
@@ -31,6 +26,8 @@ vtkStandardNewMacro(vtkLacunaImplantPlate);
 //------------------------------------------------------------------------------
 vtkLacunaImplantPlate::vtkLacunaImplantPlate()
 {
+  this->Sharing = lacuna::Share::FirstRank;
+  this->TakesBlocks = true;
   this->SetNumberOfInputPorts(2);
 }
 
@@ -159,196 +156,183 @@ int vtkLacunaImplantPlate::FillInputPortInformation(int port, vtkInformation* in
 }
 
 //------------------------------------------------------------------------------
-int vtkLacunaImplantPlate::RequestUpdateExtent(
-  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
+void vtkLacunaImplantPlate::Make(const lacuna::Ports& ports, vtkLacunaExecution& execution)
 {
-  for (int port = 0; port < 2; ++port)
+  auto* map = ports.GetInput<vtkImageData>();
+  auto* marks = ports.GetInput<vtkPointSet>(1);
+  auto* output = ports.GetOutput<vtkPolyData>();
+  if (this->Side != Inward && this->Side != Outward)
   {
-    if (vtkInformation* info = inputVector[port]->GetInformationObject(0))
+    throw std::runtime_error(
+      "Side is " + std::to_string(this->Side) + "; it must be 0 (Inward) or 1 (Outward)");
+  }
+  if (this->EdgeShape < Square || this->EdgeShape > Rounded)
+  {
+    throw std::runtime_error("EdgeShape is " + std::to_string(this->EdgeShape) +
+      "; it must be 0 (Square), 1 (Beveled) or 2 (Rounded)");
+  }
+  if (!(this->Density > 0 && std::isfinite(this->Density)))
+  {
+    throw std::runtime_error("Density is " + lacuna::FormatNumber(this->Density) +
+      "; it must be a number of g/cm^3 above 0");
+  }
+  const vtkLacunaFittedPart part(map, "a plate");
+  const lacuna::Vec2& spacing = part.Spacing;
+  const lacuna::Matrix4& toWorld = part.ToWorld;
+
+  lacuna::ImplantPlateOptions options;
+  options.Thickness = this->Thickness;
+  options.Side = this->Side == Inward ? lacuna::PlateSide::Inward : lacuna::PlateSide::Outward;
+  options.EdgeClearance = this->EdgeClearance;
+  options.CornerRadius = this->CornerRadius;
+  options.Edge = static_cast<lacuna::PlateEdge>(this->EdgeShape);
+  options.EdgeSize = this->Bevel;
+  options.BothFaces = this->BevelBothFaces;
+  const bool automatic = this->TriangleSize == 0;
+  options.TriangleSize =
+    automatic ? std::min({ LargestTriangle, spacing[0], spacing[1] }) : this->TriangleSize;
+  options.Hole = { this->HoleDiameter, this->CountersinkDiameter, this->CountersinkAngle };
+  options.DrainageSpacing = this->DrainageSpacing;
+  options.DrainageDiameter = this->DrainageDiameter;
+  std::vector<lacuna::Vec3> holes;
+  for (const auto& p : this->HolePoints)
+  {
+    holes.push_back({ p[0], p[1], p[2] });
+  }
+  if (marks)
+  {
+    const double together = std::max(this->HoleDiameter, this->CountersinkDiameter);
+    const std::vector<lacuna::Vec3> marked = GetMarkedHoles(marks, together);
+    holes.insert(holes.end(), marked.begin(), marked.end());
+  }
+  const lacuna::Matrix4 toPart = toWorld.Inverse();
+  for (const lacuna::Vec3& p : holes)
+  {
+    options.HolePoints.push_back(toPart.Point(p));
+  }
+
+  execution.SetStage(0, 0.1);
+  const lacuna::ReliefSurface surface(execution, part.Size, part.Depths, spacing);
+  execution.SetStage(0.1, 1);
+  lacuna::ImplantPlate plate;
+  for (int refinements = 0;; ++refinements)
+  {
+    const lacuna::Execution::NestedStages nested(execution);
+    plate =
+      lacuna::MakeImplantPlate(execution, surface, part.Size, spacing, part.Mask, options, toWorld);
+    const double lack = 1 - plate.MinimumThickness / this->Thickness;
+    if (!automatic || lack <= LargestLack || refinements == MaximumRefinements)
     {
-      vtkLacunaRequest::Whole(this, info, outputVector);
+      break;
+    }
+    // what flat triangles lack goes with the square of their size
+    options.TriangleSize *= std::max(0.5, std::sqrt(0.8 * LargestLack / lack));
+  }
+  if (plate.MinimumThickness < (1 - LargestLack) * this->Thickness)
+  {
+    vtkWarningMacro(<< "triangles of " << lacuna::FormatNumber(options.TriangleSize)
+                    << " mm are too coarse for the bends of the surface: the plate is only "
+                    << lacuna::FormatNumber(std::round(1e4 * plate.MinimumThickness) / 1e4)
+                    << " mm thick where the faces are nearest; make TriangleSize smaller");
+  }
+  for (const std::string& warning : plate.Outline.Warnings)
+  {
+    vtkWarningMacro(<< warning);
+  }
+  if (this->EdgeClearance < 0 && this->Side == Inward)
+  {
+    vtkWarningMacro("the plate overlaps the bone (EdgeClearance is negative) and grows inwards, "
+                    "so its rim lies within the bone; use Side Outward, or prepare a seat");
+  }
+
+  vtkLacunaSolidMesh::Set(output, plate, toWorld, PlateFaceName);
+  std::vector<double> centers;
+  std::vector<double> axes;
+  std::vector<double> bone;
+  std::vector<double> land;
+  std::string unmeasured;
+  for (std::size_t k = 0; k < plate.Holes.size(); ++k)
+  {
+    const lacuna::PlateHole& hole = plate.Holes[k];
+    Append(centers, toWorld.Point(hole.Centre));
+    Append(axes, lacuna::Normalized(toWorld.Vector(hole.Axis)));
+    land.push_back(hole.Land);
+    bone.push_back(GetBoneThickness(map, part, hole));
+    if (bone.back() < this->MinimumBoneThickness)
+    {
+      const std::string found = bone.back() == 0
+        ? "lies over the defect, where there is no bone for a screw"
+        : "lies over bone only " + lacuna::FormatNumber(std::round(100 * bone.back()) / 100) +
+          " mm thick (MinimumBoneThickness is " + lacuna::FormatNumber(this->MinimumBoneThickness) +
+          " mm)";
+      vtkWarningMacro(<< "screw hole " << k + 1 << " " << found);
+    }
+    if (std::isnan(bone.back()))
+    {
+      unmeasured += (unmeasured.empty() ? "" : ", ") + std::to_string(k + 1);
     }
   }
-  return 1;
+  if (!unmeasured.empty() && this->MinimumBoneThickness > 0)
+  {
+    vtkWarningMacro(<< "the thickness of the bone under screw hole " << unmeasured
+                    << " was not measured, so it is not known whether it holds a screw; set "
+                       "ComputeThickness of B-Spline Iso Ray Caster, or MinimumBoneThickness 0 "
+                       "not to be told");
+  }
+  constexpr double NaN = std::numeric_limits<double>::quiet_NaN();
+  const bool isMeasured = std::isfinite(plate.MinimumThickness); // else all of it is edge
+  const lacuna::Vec3 tightest = std::isfinite(plate.MinimumRadius)
+    ? toWorld.Point(plate.MinimumRadiusPoint)
+    : lacuna::Vec3{ NaN, NaN, NaN };
+  vtkLacunaFieldData::Set(output, "Volume", { plate.Volume }, 1);
+  vtkLacunaFieldData::Set(output, "Mass", { plate.Volume * this->Density / 1000 }, 1);
+  vtkLacunaFieldData::Set(output, "OuterArea", { plate.OuterArea }, 1);
+  vtkLacunaFieldData::Set(output, "OutlineLength", { plate.Outline.Length }, 1);
+  vtkLacunaFieldData::Set(
+    output, "MinimumThickness", { isMeasured ? plate.MinimumThickness : NaN }, 1);
+  vtkLacunaFieldData::Set(
+    output, "MinimumCurvatureRadius", { isMeasured ? plate.MinimumRadius : NaN }, 1);
+  vtkLacunaFieldData::Set(output, "TightestPoint", { tightest[0], tightest[1], tightest[2] }, 3);
+  vtkLacunaFieldData::Set(output, "HoleCenters", centers, 3);
+  vtkLacunaFieldData::Set(output, "HoleAxes", axes, 3);
+  vtkLacunaFieldData::Set(output, "HoleBoneThickness", bone, 1);
+  vtkLacunaFieldData::Set(output, "HoleLand", land, 1);
+  vtkLacunaFieldData::Set(
+    output, "DrainageHoleCount", { static_cast<double>(plate.DrainageHoles) }, 1);
+
+  this->Drilled.clear();
+  for (const lacuna::Vec3& p : holes)
+  {
+    Append(this->Drilled, p);
+  }
 }
 
 //------------------------------------------------------------------------------
-int vtkLacunaImplantPlate::RequestData(
-  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
+std::vector<vtkDataObject*> vtkLacunaImplantPlate::GetOrigins(const lacuna::Ports& ports) const
 {
-  vtkImageData* map = vtkImageData::GetData(inputVector[0]);
-  vtkPointSet* marks = vtkPointSet::GetData(inputVector[1]);
-  vtkPolyData* output = vtkPolyData::GetData(outputVector);
-  const bool isWanted = vtkLacunaRequest::IsWanted(outputVector); // the plate is one piece
-  const auto body = [&](vtkLacunaExecution& execution)
-  {
-    if (!map || map->GetNumberOfPoints() == 0)
-    {
-      return; // empty in, empty out
-    }
-    if (this->Side != Inward && this->Side != Outward)
-    {
-      throw std::runtime_error(
-        "Side is " + std::to_string(this->Side) + "; it must be 0 (Inward) or 1 (Outward)");
-    }
-    if (this->EdgeShape < Square || this->EdgeShape > Rounded)
-    {
-      throw std::runtime_error("EdgeShape is " + std::to_string(this->EdgeShape) +
-        "; it must be 0 (Square), 1 (Beveled) or 2 (Rounded)");
-    }
-    if (!(this->Density > 0 && std::isfinite(this->Density)))
-    {
-      throw std::runtime_error("Density is " + lacuna::FormatNumber(this->Density) +
-        "; it must be a number of g/cm^3 above 0");
-    }
-    const vtkLacunaFittedPart part(map, "a plate");
-    const lacuna::Vec2& spacing = part.Spacing;
-    const lacuna::Matrix4& toWorld = part.ToWorld;
+  return { ports.GetInput<vtkDataObject>() }; // the marks are parameters
+}
 
-    lacuna::ImplantPlateOptions options;
-    options.Thickness = this->Thickness;
-    options.Side = this->Side == Inward ? lacuna::PlateSide::Inward : lacuna::PlateSide::Outward;
-    options.EdgeClearance = this->EdgeClearance;
-    options.CornerRadius = this->CornerRadius;
-    options.Edge = static_cast<lacuna::PlateEdge>(this->EdgeShape);
-    options.EdgeSize = this->Bevel;
-    options.BothFaces = this->BevelBothFaces;
-    const bool automatic = this->TriangleSize == 0;
-    options.TriangleSize =
-      automatic ? std::min({ LargestTriangle, spacing[0], spacing[1] }) : this->TriangleSize;
-    options.Hole = { this->HoleDiameter, this->CountersinkDiameter, this->CountersinkAngle };
-    options.DrainageSpacing = this->DrainageSpacing;
-    options.DrainageDiameter = this->DrainageDiameter;
-    std::vector<lacuna::Vec3> holes;
-    for (const auto& p : this->HolePoints)
-    {
-      holes.push_back({ p[0], p[1], p[2] });
-    }
-    if (marks)
-    {
-      const double together = std::max(this->HoleDiameter, this->CountersinkDiameter);
-      const std::vector<lacuna::Vec3> marked = GetMarkedHoles(marks, together);
-      holes.insert(holes.end(), marked.begin(), marked.end());
-    }
-    const lacuna::Matrix4 toPart = toWorld.Inverse();
-    for (const lacuna::Vec3& p : holes)
-    {
-      options.HolePoints.push_back(toPart.Point(p));
-    }
-
-    execution.SetStage(0, 0.1);
-    const lacuna::ReliefSurface surface(execution, part.Size, part.Depths, spacing);
-    execution.SetStage(0.1, 1);
-    lacuna::ImplantPlate plate;
-    for (int refinements = 0;; ++refinements)
-    {
-      const lacuna::Execution::NestedStages nested(execution);
-      plate = lacuna::MakeImplantPlate(
-        execution, surface, part.Size, spacing, part.Mask, options, toWorld);
-      const double lack = 1 - plate.MinimumThickness / this->Thickness;
-      if (!automatic || lack <= LargestLack || refinements == MaximumRefinements)
-      {
-        break;
-      }
-      // what flat triangles lack goes with the square of their size
-      options.TriangleSize *= std::max(0.5, std::sqrt(0.8 * LargestLack / lack));
-    }
-    if (plate.MinimumThickness < (1 - LargestLack) * this->Thickness)
-    {
-      vtkWarningMacro(<< "triangles of " << lacuna::FormatNumber(options.TriangleSize)
-                      << " mm are too coarse for the bends of the surface: the plate is only "
-                      << lacuna::FormatNumber(std::round(1e4 * plate.MinimumThickness) / 1e4)
-                      << " mm thick where the faces are nearest; make TriangleSize smaller");
-    }
-    for (const std::string& warning : plate.Outline.Warnings)
-    {
-      vtkWarningMacro(<< warning);
-    }
-    if (this->EdgeClearance < 0 && this->Side == Inward)
-    {
-      vtkWarningMacro("the plate overlaps the bone (EdgeClearance is negative) and grows inwards, "
-                      "so its rim lies within the bone; use Side Outward, or prepare a seat");
-    }
-
-    vtkLacunaSolidMesh::Set(output, plate, toWorld, PlateFaceName);
-    std::vector<double> centers;
-    std::vector<double> axes;
-    std::vector<double> bone;
-    std::vector<double> land;
-    std::string unmeasured;
-    for (std::size_t k = 0; k < plate.Holes.size(); ++k)
-    {
-      const lacuna::PlateHole& hole = plate.Holes[k];
-      Append(centers, toWorld.Point(hole.Centre));
-      Append(axes, lacuna::Normalized(toWorld.Vector(hole.Axis)));
-      land.push_back(hole.Land);
-      bone.push_back(GetBoneThickness(map, part, hole));
-      if (bone.back() < this->MinimumBoneThickness)
-      {
-        const std::string found = bone.back() == 0
-          ? "lies over the defect, where there is no bone for a screw"
-          : "lies over bone only " + lacuna::FormatNumber(std::round(100 * bone.back()) / 100) +
-            " mm thick (MinimumBoneThickness is " +
-            lacuna::FormatNumber(this->MinimumBoneThickness) + " mm)";
-        vtkWarningMacro(<< "screw hole " << k + 1 << " " << found);
-      }
-      if (std::isnan(bone.back()))
-      {
-        unmeasured += (unmeasured.empty() ? "" : ", ") + std::to_string(k + 1);
-      }
-    }
-    if (!unmeasured.empty() && this->MinimumBoneThickness > 0)
-    {
-      vtkWarningMacro(<< "the thickness of the bone under screw hole " << unmeasured
-                      << " was not measured, so it is not known whether it holds a screw; set "
-                         "ComputeThickness of B-Spline Iso Ray Caster, or MinimumBoneThickness 0 "
-                         "not to be told");
-    }
-    constexpr double NaN = std::numeric_limits<double>::quiet_NaN();
-    const bool isMeasured = std::isfinite(plate.MinimumThickness); // else all of it is edge
-    const lacuna::Vec3 tightest = std::isfinite(plate.MinimumRadius)
-      ? toWorld.Point(plate.MinimumRadiusPoint)
-      : lacuna::Vec3{ NaN, NaN, NaN };
-    vtkLacunaFieldData::Set(output, "Volume", { plate.Volume }, 1);
-    vtkLacunaFieldData::Set(output, "Mass", { plate.Volume * this->Density / 1000 }, 1);
-    vtkLacunaFieldData::Set(output, "OuterArea", { plate.OuterArea }, 1);
-    vtkLacunaFieldData::Set(output, "OutlineLength", { plate.Outline.Length }, 1);
-    vtkLacunaFieldData::Set(
-      output, "MinimumThickness", { isMeasured ? plate.MinimumThickness : NaN }, 1);
-    vtkLacunaFieldData::Set(
-      output, "MinimumCurvatureRadius", { isMeasured ? plate.MinimumRadius : NaN }, 1);
-    vtkLacunaFieldData::Set(output, "TightestPoint", { tightest[0], tightest[1], tightest[2] }, 3);
-    vtkLacunaFieldData::Set(output, "HoleCenters", centers, 3);
-    vtkLacunaFieldData::Set(output, "HoleAxes", axes, 3);
-    vtkLacunaFieldData::Set(output, "HoleBoneThickness", bone, 1);
-    vtkLacunaFieldData::Set(output, "HoleLand", land, 1);
-    vtkLacunaFieldData::Set(
-      output, "DrainageHoleCount", { static_cast<double>(plate.DrainageHoles) }, 1);
-
-    std::vector<double> picked;
-    for (const lacuna::Vec3& p : holes)
-    {
-      Append(picked, p);
-    }
-    lacuna::ParameterText parameters;
-    parameters.Add("Thickness", this->Thickness)
-      .Add("Side", this->Side)
-      .Add("EdgeClearance", this->EdgeClearance)
-      .Add("EdgeShape", this->EdgeShape)
-      .Add("Bevel", this->Bevel)
-      .Add("BevelBothFaces", this->BevelBothFaces)
-      .Add("CornerRadius", this->CornerRadius)
-      .Add("TriangleSize", this->TriangleSize)
-      .Add("HolePoints", picked)
-      .Add("HoleDiameter", this->HoleDiameter)
-      .Add("CountersinkDiameter", this->CountersinkDiameter)
-      .Add("CountersinkAngle", this->CountersinkAngle)
-      .Add("DrainageSpacing", this->DrainageSpacing)
-      .Add("DrainageDiameter", this->DrainageDiameter)
-      .Add("Density", this->Density);
-    vtkLacunaProvenance::Record(output, this, { map }, parameters.Get());
-  };
-  return vtkLacunaExecution::RunAgreed(this, outputVector, isWanted, body);
+//------------------------------------------------------------------------------
+std::string vtkLacunaImplantPlate::Parameters(int) const
+{
+  return lacuna::ParameterText()
+    .Add("Thickness", this->Thickness)
+    .Add("Side", this->Side)
+    .Add("EdgeClearance", this->EdgeClearance)
+    .Add("EdgeShape", this->EdgeShape)
+    .Add("Bevel", this->Bevel)
+    .Add("BevelBothFaces", this->BevelBothFaces)
+    .Add("CornerRadius", this->CornerRadius)
+    .Add("TriangleSize", this->TriangleSize)
+    .Add("HolePoints", this->Drilled)
+    .Add("HoleDiameter", this->HoleDiameter)
+    .Add("CountersinkDiameter", this->CountersinkDiameter)
+    .Add("CountersinkAngle", this->CountersinkAngle)
+    .Add("DrainageSpacing", this->DrainageSpacing)
+    .Add("DrainageDiameter", this->DrainageDiameter)
+    .Add("Density", this->Density)
+    .Get();
 }
 
 //------------------------------------------------------------------------------

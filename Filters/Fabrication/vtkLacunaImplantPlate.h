@@ -49,20 +49,20 @@
 #ifndef vtkLacunaImplantPlate_h
 #define vtkLacunaImplantPlate_h
 
+#include "vtkLacunaAlgorithm.h"
 #include "vtkLacunaFiltersFabricationModule.h" // for export macro
-#include "vtkLacunaVersionCompat.h"            // for stops
 #include "vtkPolyDataAlgorithm.h"
 
 #include <array>  // for ivar
 #include <vector> // for ivar
 
-class VTKLACUNAFILTERSFABRICATION_EXPORT vtkLacunaImplantPlate : public vtkPolyDataAlgorithm
+class VTKLACUNAFILTERSFABRICATION_EXPORT vtkLacunaImplantPlate
+  : public vtkLacunaAlgorithmOf(vtkPolyDataAlgorithm)
 {
 public:
   static vtkLacunaImplantPlate* New();
   vtkTypeMacro(vtkLacunaImplantPlate, vtkPolyDataAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
-  vtkLacunaKeepTimeAtStops();
 
   static constexpr const char* PlateFaceName = "PlateFace";
 
@@ -176,8 +176,9 @@ protected:
   vtkLacunaImplantPlate();
   ~vtkLacunaImplantPlate() override = default;
   int FillInputPortInformation(int port, vtkInformation* info) override;
-  int RequestUpdateExtent(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
-  int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
+  void Make(const lacuna::Ports& ports, vtkLacunaExecution& execution) override;
+  std::string Parameters(int port) const override;
+  std::vector<vtkDataObject*> GetOrigins(const lacuna::Ports& ports) const override;
 
 private:
   vtkLacunaImplantPlate(const vtkLacunaImplantPlate&) = delete;
@@ -192,6 +193,7 @@ private:
   double CornerRadius = 1;
   double TriangleSize = 0;
   std::vector<std::array<double, 3>> HolePoints;
+  std::vector<double> Drilled; ///< all holes, for the provenance
   double HoleDiameter = 2;
   double CountersinkDiameter = 0;
   double CountersinkAngle = 90;

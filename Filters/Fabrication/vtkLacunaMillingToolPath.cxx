@@ -8,25 +8,19 @@
 #include "vtkDoubleArray.h"
 #include "vtkFieldData.h"
 #include "vtkInformation.h"
-#include "vtkInformationVector.h"
 #include "vtkIntArray.h"
 #include "vtkLacunaArrays.h"
 #include "vtkLacunaCoordinates.h"
-#include "vtkLacunaExecution.h"
 #include "vtkLacunaFieldData.h"
 #include "vtkLacunaGridLayer.h"
 #include "vtkLacunaMirrored.h"
 #include "vtkLacunaPressPosition.h"
-#include "vtkLacunaProvenance.h"
-#include "vtkLacunaRanks.h"
-#include "vtkLacunaRequest.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
 #include "vtkSmartPointer.h"
-#include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkStringArray.h"
 #include "vtkStructuredGrid.h"
 #include "vtkTypeInt64Array.h"
@@ -234,6 +228,8 @@ std::string DescribeBorder(const lacuna::LeftOverMap& map, double limit, bool be
 //------------------------------------------------------------------------------
 vtkLacunaMillingToolPath::vtkLacunaMillingToolPath()
 {
+  this->Sharing = lacuna::Share::FirstRank;
+  this->TakesBlocks = true;
   this->SetNumberOfOutputPorts(2);
 }
 
@@ -241,14 +237,6 @@ vtkLacunaMillingToolPath::vtkLacunaMillingToolPath()
 int vtkLacunaMillingToolPath::FillInputPortInformation(int, vtkInformation* info)
 {
   info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkStructuredGrid");
-  return 1;
-}
-
-//------------------------------------------------------------------------------
-int vtkLacunaMillingToolPath::RequestUpdateExtent(
-  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
-{
-  vtkLacunaRequest::Whole(this, inputVector[0]->GetInformationObject(0), outputVector);
   return 1;
 }
 
@@ -286,7 +274,7 @@ void vtkLacunaMillingToolPath::CheckProperties() const
 }
 
 //------------------------------------------------------------------------------
-std::string vtkLacunaMillingToolPath::GetParameters() const
+std::string vtkLacunaMillingToolPath::Parameters(int) const
 {
   lacuna::ParameterText parameters;
   parameters.Add("ToolShape", this->ToolShape)
@@ -315,126 +303,110 @@ std::string vtkLacunaMillingToolPath::GetParameters() const
 }
 
 //------------------------------------------------------------------------------
-int vtkLacunaMillingToolPath::RequestData(
-  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
+void vtkLacunaMillingToolPath::Make(const lacuna::Ports& ports, vtkLacunaExecution& execution)
 {
-  vtkStructuredGrid* grid = vtkStructuredGrid::GetData(inputVector[0]);
-  const bool empty = !grid || grid->GetNumberOfPoints() == 0;
-  // a path is one piece, and other ranks than the first have nothing of what Press Orientation makes
-  const bool isWanted =
-    vtkLacunaRequest::IsWanted(outputVector) && (!empty || vtkLacunaRanks().GetRank() == 0);
-  const auto body = [&](vtkLacunaExecution& execution)
+  auto* grid = ports.GetInput<vtkStructuredGrid>();
+  this->CheckProperties();
+  vtkLacunaFieldData::Find(grid, PressToPatientName, 16, 1);
+  const std::string elsewhere = vtkLacunaPressPosition::Check(grid);
+  const bool moved = !elsewhere.empty();
+  auto told = vtkSmartPointer<vtkStringArray>::New();
+  told->SetName(WarningsName);
+  const auto warn = [this, &told](const std::string& warning)
   {
-    if (empty)
+    vtkWarningMacro(<< warning);
+    told->InsertNextValue(warning);
+  };
+  if (moved)
+  {
+    warn(elsewhere);
+  }
+  if (vtkLacunaMirrored::IsMarked(grid))
+  {
+    vtkWarningMacro("the surface is a mirror image of the patient (field data Mirrored), and so is "
+                    "what is milled with this path");
+  }
+  vtkLacunaGridLayer layer(grid);
+  const lacuna::MillSurface surface(layer.Size, std::move(layer.Points));
+  lacuna::ToolPathOptions options;
+  options.Tool = { static_cast<lacuna::ToolShape>(this->ToolShape), this->ToolRadius };
+  options.StepOver = this->StepOver;
+  options.ScallopHeight = this->ScallopHeight;
+  options.Overrun = this->Overrun;
+  options.Direction = this->Direction;
+  options.OneWay = this->Pattern == OneWay;
+  options.PathStep = this->PathStep;
+  options.Tolerance = this->Tolerance;
+  options.Finishing = this->Finishing;
+  options.RoughingStep = this->RoughingStep;
+  options.RoughingStepOver = this->RoughingStepOver;
+  options.StockAllowance = this->StockAllowance;
+  options.StockTop = this->StockTop;
+  options.SafeHeight = this->SafeHeight;
+  options.LeadRadius = this->LeadRadius;
+  execution.SetStage(0, 0.5);
+  const lacuna::ToolPath path = lacuna::MakeToolPath(execution, surface, options);
+  std::for_each(path.Warnings.begin(), path.Warnings.end(), warn);
+  execution.SetStage(0.5, 0.95);
+  const double step = path.SmallestStepOver > 0 ? path.SmallestStepOver : this->ToolRadius;
+  const lacuna::LeftOverMap map = lacuna::MapLeftOver(
+    execution, surface, options.Tool, path, this->MapSpacing > 0 ? this->MapSpacing : step / 4);
+  if (this->MapSpacing > 0 && map.Spacing > this->MapSpacing * (1 + 1e-9))
+  {
+    vtkWarningMacro(<< "MapSpacing " << this->MapSpacing
+                    << " mm would take more points than the map "
+                    << "may have; they are up to " << map.Spacing << " mm apart");
+  }
+  const std::string unreachable = DescribeUnreachable(map, this->ToolRadius, this->LeftOverLimit);
+  if (!unreachable.empty())
+  {
+    warn(unreachable);
+  }
+  if (this->Finishing)
+  {
+    const double s = path.LargestStepOver;
+    const double r = this->ToolRadius;
+    // what a dense path leaves on steep slopes, and so at borders, too
+    const double half2 = std::max(0.0, r * r - 0.25 * s * s); // s may be 2 r and a bit
+    const double steep = this->ToolShape == Ball ? 4 * (r - std::sqrt(half2)) : s;
+    const std::string border =
+      DescribeBorder(map, this->LeftOverLimit + steep, this->Overrun >= this->ToolRadius);
+    if (!border.empty())
     {
-      return; // empty in, empty out
+      warn(border);
     }
-    this->CheckProperties();
-    vtkLacunaFieldData::Find(grid, PressToPatientName, 16, 1);
-    const std::string elsewhere = vtkLacunaPressPosition::Check(grid);
-    const bool moved = !elsewhere.empty();
-    auto told = vtkSmartPointer<vtkStringArray>::New();
-    told->SetName(WarningsName);
-    const auto warn = [this, &told](const std::string& warning)
-    {
-      vtkWarningMacro(<< warning);
-      told->InsertNextValue(warning);
-    };
+  }
+
+  auto* lines = ports.GetOutput<vtkPolyData>();
+  auto* left = ports.GetOutput<vtkPolyData>(1);
+  const Totals totals = SetPath(
+    lines, path, { this->RapidFeedRate, this->PlungeFeedRate, this->FeedRate, this->FeedRate });
+  SetMap(left, map);
+  for (vtkPolyData* output : { lines, left })
+  {
+    output->GetFieldData()->ShallowCopy(grid->GetFieldData());
+    const auto set = [output](const char* name, const std::vector<double>& values)
+    { vtkLacunaFieldData::Set(output, name, values, static_cast<int>(values.size())); };
+    output->GetFieldData()->RemoveArray(WarningsName); // those of Press Orientation
+    output->GetFieldData()->AddArray(told);
+    set("ToolShape", { static_cast<double>(this->ToolShape) });
+    set("ToolRadius", { this->ToolRadius });
+    set("SpindleSpeed", { this->SpindleSpeed });
+    set("StepOver", { path.SmallestStepOver, path.LargestStepOver });
+    set("StockTop", { path.StockTop });
+    set("SafeZ", { path.SafeZ });
+    set("Levels", { static_cast<double>(path.Levels) });
+    set("Positions", { totals.Positions });
+    set("PathLength", { totals.Cutting, totals.All });
+    set("MachiningTime", { totals.Time });
+    set("LargestLeftOver", { map.LargestLeftOver });
+    set("LargestGouge", { map.LargestGouge });
+    vtkLacunaPressPosition::Record(output);
     if (moved)
     {
-      warn(elsewhere);
+      MarkMoved(output, vtkLacunaPressPosition::FindMove(grid)->Way);
     }
-    if (vtkLacunaMirrored::IsMarked(grid))
-    {
-      vtkWarningMacro(
-        "the surface is a mirror image of the patient (field data Mirrored), and so is "
-        "what is milled with this path");
-    }
-    vtkLacunaGridLayer layer(grid);
-    const lacuna::MillSurface surface(layer.Size, std::move(layer.Points));
-    lacuna::ToolPathOptions options;
-    options.Tool = { static_cast<lacuna::ToolShape>(this->ToolShape), this->ToolRadius };
-    options.StepOver = this->StepOver;
-    options.ScallopHeight = this->ScallopHeight;
-    options.Overrun = this->Overrun;
-    options.Direction = this->Direction;
-    options.OneWay = this->Pattern == OneWay;
-    options.PathStep = this->PathStep;
-    options.Tolerance = this->Tolerance;
-    options.Finishing = this->Finishing;
-    options.RoughingStep = this->RoughingStep;
-    options.RoughingStepOver = this->RoughingStepOver;
-    options.StockAllowance = this->StockAllowance;
-    options.StockTop = this->StockTop;
-    options.SafeHeight = this->SafeHeight;
-    options.LeadRadius = this->LeadRadius;
-    execution.SetStage(0, 0.5);
-    const lacuna::ToolPath path = lacuna::MakeToolPath(execution, surface, options);
-    std::for_each(path.Warnings.begin(), path.Warnings.end(), warn);
-    execution.SetStage(0.5, 0.95);
-    const double step = path.SmallestStepOver > 0 ? path.SmallestStepOver : this->ToolRadius;
-    const lacuna::LeftOverMap map = lacuna::MapLeftOver(
-      execution, surface, options.Tool, path, this->MapSpacing > 0 ? this->MapSpacing : step / 4);
-    if (this->MapSpacing > 0 && map.Spacing > this->MapSpacing * (1 + 1e-9))
-    {
-      vtkWarningMacro(<< "MapSpacing " << this->MapSpacing
-                      << " mm would take more points than the map "
-                      << "may have; they are up to " << map.Spacing << " mm apart");
-    }
-    const std::string unreachable = DescribeUnreachable(map, this->ToolRadius, this->LeftOverLimit);
-    if (!unreachable.empty())
-    {
-      warn(unreachable);
-    }
-    if (this->Finishing)
-    {
-      const double s = path.LargestStepOver;
-      const double r = this->ToolRadius;
-      // what a dense path leaves on steep slopes, and so at borders, too
-      const double half2 = std::max(0.0, r * r - 0.25 * s * s); // s may be 2 r and a bit
-      const double steep = this->ToolShape == Ball ? 4 * (r - std::sqrt(half2)) : s;
-      const std::string border =
-        DescribeBorder(map, this->LeftOverLimit + steep, this->Overrun >= this->ToolRadius);
-      if (!border.empty())
-      {
-        warn(border);
-      }
-    }
-
-    vtkPolyData* lines = vtkPolyData::GetData(outputVector, 0);
-    vtkPolyData* left = vtkPolyData::GetData(outputVector, 1);
-    const Totals totals = SetPath(
-      lines, path, { this->RapidFeedRate, this->PlungeFeedRate, this->FeedRate, this->FeedRate });
-    SetMap(left, map);
-    const std::string parameters = this->GetParameters();
-    for (vtkPolyData* output : { lines, left })
-    {
-      output->GetFieldData()->ShallowCopy(grid->GetFieldData());
-      const auto set = [output](const char* name, const std::vector<double>& values)
-      { vtkLacunaFieldData::Set(output, name, values, static_cast<int>(values.size())); };
-      output->GetFieldData()->RemoveArray(WarningsName); // those of Press Orientation
-      output->GetFieldData()->AddArray(told);
-      set("ToolShape", { static_cast<double>(this->ToolShape) });
-      set("ToolRadius", { this->ToolRadius });
-      set("SpindleSpeed", { this->SpindleSpeed });
-      set("StepOver", { path.SmallestStepOver, path.LargestStepOver });
-      set("StockTop", { path.StockTop });
-      set("SafeZ", { path.SafeZ });
-      set("Levels", { static_cast<double>(path.Levels) });
-      set("Positions", { totals.Positions });
-      set("PathLength", { totals.Cutting, totals.All });
-      set("MachiningTime", { totals.Time });
-      set("LargestLeftOver", { map.LargestLeftOver });
-      set("LargestGouge", { map.LargestGouge });
-      vtkLacunaPressPosition::Record(output);
-      if (moved)
-      {
-        MarkMoved(output, vtkLacunaPressPosition::FindMove(grid)->Way);
-      }
-      vtkLacunaProvenance::Record(output, this, { grid }, parameters);
-    }
-  };
-  return vtkLacunaExecution::RunAgreed(this, outputVector, isWanted, body);
+  }
 }
 
 //------------------------------------------------------------------------------

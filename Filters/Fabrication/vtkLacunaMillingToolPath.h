@@ -50,19 +50,19 @@
 #ifndef vtkLacunaMillingToolPath_h
 #define vtkLacunaMillingToolPath_h
 
+#include "vtkLacunaAlgorithm.h"
 #include "vtkLacunaFiltersFabricationModule.h" // for export macro
-#include "vtkLacunaVersionCompat.h"            // for stops
 #include "vtkPolyDataAlgorithm.h"
 
 #include <string> // for parameters
 
-class VTKLACUNAFILTERSFABRICATION_EXPORT vtkLacunaMillingToolPath : public vtkPolyDataAlgorithm
+class VTKLACUNAFILTERSFABRICATION_EXPORT vtkLacunaMillingToolPath
+  : public vtkLacunaAlgorithmOf(vtkPolyDataAlgorithm)
 {
 public:
   static vtkLacunaMillingToolPath* New();
   vtkTypeMacro(vtkLacunaMillingToolPath, vtkPolyDataAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
-  vtkLacunaKeepTimeAtStops();
 
   /// Field data of both outputs: what was warned of, a text each; vtkLacunaGCodeWriter asks about it.
   static constexpr const char* WarningsName = "Warnings";
@@ -207,17 +207,14 @@ protected:
   ~vtkLacunaMillingToolPath() override = default;
 
   int FillInputPortInformation(int port, vtkInformation* info) override;
-  int RequestUpdateExtent(vtkInformation* request, vtkInformationVector** inputVector,
-    vtkInformationVector* outputVector) override;
-  int RequestData(vtkInformation* request, vtkInformationVector** inputVector,
-    vtkInformationVector* outputVector) override;
+  void Make(const lacuna::Ports& ports, vtkLacunaExecution& execution) override;
+  std::string Parameters(int port) const override;
 
 private:
   vtkLacunaMillingToolPath(const vtkLacunaMillingToolPath&) = delete;
   void operator=(const vtkLacunaMillingToolPath&) = delete;
 
   void CheckProperties() const;
-  std::string GetParameters() const;
 
   int ToolShape = Ball;
   double ToolRadius = 4;

@@ -10,16 +10,11 @@
 #include "vtkFieldData.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
-#include "vtkInformationVector.h"
 #include "vtkLacunaArrays.h"
 #include "vtkLacunaCoordinates.h"
-#include "vtkLacunaExecution.h"
 #include "vtkLacunaFieldData.h"
 #include "vtkLacunaFittedPart.h"
 #include "vtkLacunaPressPosition.h"
-#include "vtkLacunaProvenance.h"
-#include "vtkLacunaRanks.h"
-#include "vtkLacunaRequest.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
@@ -289,151 +284,116 @@ int vtkLacunaPressOrientation::FillInputPortInformation(int, vtkInformation* inf
 }
 
 //------------------------------------------------------------------------------
-int vtkLacunaPressOrientation::RequestUpdateExtent(
-  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
+void vtkLacunaPressOrientation::Announce(const lacuna::Ports& ports)
 {
-  vtkLacunaRequest::ForgetEmpty(outputVector);
-  vtkLacunaRequest::WholeOnFirst(this, inputVector[0]->GetInformationObject(0), outputVector);
-  return 1;
-}
-
-//------------------------------------------------------------------------------
-int vtkLacunaPressOrientation::RequestInformation(
-  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
-{
-  return vtkLacunaExecution::RunInformation(this, outputVector,
-    [&]
+  this->UpdateInput(ports); // the size of the grid depends on the defect
+  int extent[6] = { 0, -1, 0, -1, 0, -1 };
+  auto* map = ports.GetInput<vtkDataSet>();
+  if (map && map->GetNumberOfPoints() > 0)
+  {
+    vtkLacunaExecution execution(this);
+    const Plan plan(execution, this, map);
+    if (plan.Layout.SingleValued)
     {
-      // the size of the grid depends on the defect
-      const bool first = vtkLacunaRequest::UpdateNowOnFirst(this);
-      int extent[6] = { 0, -1, 0, -1, 0, -1 };
-      vtkDataSet* map = vtkDataSet::GetData(inputVector[0]);
-      if (first && map && map->GetNumberOfPoints() > 0)
-      {
-        vtkLacunaExecution execution(this);
-        try
-        {
-          const Plan plan(execution, this, map);
-          if (plan.Layout.SingleValued)
-          {
-            extent[1] = plan.GetColumns() - 1;
-            extent[3] = plan.GetRows() - 1;
-            extent[5] = 0;
-          }
-        }
-        catch (const lacuna::Aborted&)
-        {
-          throw;
-        }
-        catch (const std::exception&)
-        {
-          extent[1] = -1; // no mould; RequestData meets the same error and reports it, once
-        }
-      }
-      outputVector->GetInformationObject(0)->Set(
-        vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), extent, 6);
-    });
+      extent[1] = plan.GetColumns() - 1;
+      extent[3] = plan.GetRows() - 1;
+      extent[5] = 0;
+    }
+  }
+  ports.GetOutputInformation()->Set(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), extent, 6);
 }
 
 //------------------------------------------------------------------------------
-int vtkLacunaPressOrientation::RequestData(
-  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
+void vtkLacunaPressOrientation::Make(const lacuna::Ports& ports, vtkLacunaExecution& execution)
 {
-  vtkDataSet* map = vtkDataSet::GetData(inputVector[0]); // or a solid
-  vtkStructuredGrid* output = vtkStructuredGrid::GetData(outputVector);
+  auto* map = ports.GetInput<vtkDataSet>(); // or a solid
+  auto* output = ports.GetOutput<vtkStructuredGrid>();
   output->GetFieldData()
     ->Initialize(); // VTK passes the map's, whose ImageToWorld is not of the grid
-  // the mould is one piece
-  const bool isWanted = vtkLacunaRequest::IsWanted(outputVector) && vtkLacunaRanks().GetRank() == 0;
-  const auto body = [&](vtkLacunaExecution& execution)
+  execution.SetStage(0, 0.3);
+  const Plan plan(execution, this, map);
+  const lacuna::PressLayout& layout = plan.Layout;
+  int whole[6];
+  ports.GetOutputInformation()->Get(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), whole);
+  if (layout.SingleValued && (whole[1] + 1 != plan.GetColumns() || whole[3] + 1 != plan.GetRows()))
   {
-    if (!map || map->GetNumberOfPoints() == 0)
+    throw std::runtime_error("the depth map has changed since the grid was announced (a source "
+                             "that changes with time?); change a property and update again");
+  }
+  const lacuna::Matrix4& toWorld = plan.Part.ToWorld;
+  if (this->PlaneMethod == Fit && !plan.HasPlane)
+  {
+    vtkWarningMacro(<< "the depth map has no field data array '" << PlaneNormalName
+                    << "' (RBF Hole Filler reports it), so the least squares plane through "
+                       "Fitted is laid flat instead");
+  }
+  if (layout.SingleValued && plan.Inclination > LargestInclination)
+  {
+    vtkWarningMacro(<< "the plane of the fit is inclined by "
+                    << lacuna::FormatNumber(std::round(plan.Inclination))
+                    << " degrees to the surface over the defect, so the mould is deeper on one "
+                       "side; PlaneMethod LeastSquares lays it flatter");
+  }
+  if (layout.SingleValued)
+  {
+    execution.SetStage(0.3, 1);
+    const lacuna::PressSurface surface = plan.Make(execution);
+    SetNodes(output, surface, plan.GetColumns(), plan.GetRows());
+    vtkLacunaFieldData::SetMatrices(
+      output, PressToPatientName, { toWorld * surface.PressToRelief });
+    vtkLacunaFieldData::Set(output, "DraftAngle", { surface.DraftAngle }, 1);
+    vtkLacunaFieldData::Set(output, "Depth", { surface.Depth }, 1);
+    vtkLacunaFieldData::Set(output, "BlockSize", ToVector(surface.BlockSize), 3);
+    this->WarnOfWalls(surface, toWorld);
+    if (plan.IsSolid)
     {
-      return; // empty in, empty out
-    }
-    execution.SetStage(0, 0.3);
-    const Plan plan(execution, this, map);
-    const lacuna::PressLayout& layout = plan.Layout;
-    int whole[6];
-    outputVector->GetInformationObject(0)->Get(
-      vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), whole);
-    if (layout.SingleValued &&
-      (whole[1] + 1 != plan.GetColumns() || whole[3] + 1 != plan.GetRows()))
-    {
-      throw vtkLacunaGridChanged("the depth map has changed since the grid was announced (a source "
-                                 "that changes with time?); change a property and update again");
-    }
-    const lacuna::Matrix4& toWorld = plan.Part.ToWorld;
-    if (this->PlaneMethod == Fit && !plan.HasPlane)
-    {
-      vtkWarningMacro(<< "the depth map has no field data array '" << PlaneNormalName
-                      << "' (RBF Hole Filler reports it), so the least squares plane through "
-                         "Fitted is laid flat instead");
-    }
-    if (layout.SingleValued && plan.Inclination > LargestInclination)
-    {
-      vtkWarningMacro(<< "the plane of the fit is inclined by "
-                      << lacuna::FormatNumber(std::round(plan.Inclination))
-                      << " degrees to the surface over the defect, so the mould is deeper on one "
-                         "side; PlaneMethod LeastSquares lays it flatter");
-    }
-    if (layout.SingleValued)
-    {
-      execution.SetStage(0.3, 1);
-      const lacuna::PressSurface surface = plan.Make(execution);
-      SetNodes(output, surface, plan.GetColumns(), plan.GetRows());
-      vtkLacunaFieldData::SetMatrices(
-        output, PressToPatientName, { toWorld * surface.PressToRelief });
-      vtkLacunaFieldData::Set(output, "DraftAngle", { surface.DraftAngle }, 1);
-      vtkLacunaFieldData::Set(output, "Depth", { surface.Depth }, 1);
-      vtkLacunaFieldData::Set(output, "BlockSize", ToVector(surface.BlockSize), 3);
-      this->WarnOfWalls(surface, toWorld);
-      if (plan.IsSolid)
+      vtkLacunaFieldData::Set(output, "FaceDeviation", { plan.Part.Deviation }, 1);
+      if (plan.Part.Deviation > LargestDeviation)
       {
-        vtkLacunaFieldData::Set(output, "FaceDeviation", { plan.Part.Deviation }, 1);
-        if (plan.Part.Deviation > LargestDeviation)
-        {
-          vtkWarningMacro(<< "the mould's surface is smooth, and up to "
-                          << lacuna::FormatNumber(std::round(100 * plan.Part.Deviation) / 100)
-                          << " mm from the outer face of the solid");
-        }
+        vtkWarningMacro(<< "the mould's surface is smooth, and up to "
+                        << lacuna::FormatNumber(std::round(100 * plan.Part.Deviation) / 100)
+                        << " mm from the outer face of the solid");
       }
     }
-    else
+  }
+  else
+  {
+    if (plan.HasView)
     {
-      if (plan.HasView)
-      {
-        vtkLacunaFieldData::Set(output, SuggestedViewDirectionName, ToVector(plan.View), 3);
-      }
-      vtkWarningMacro(<< "the mill does not see all of the surface when its plane lies flat: at "
-                      << lacuna::FormatPlace(toWorld, layout.SteepestPoint) << " it is "
-                      << lacuna::FormatNumber(std::round(layout.SteepestAngle))
-                      << " degrees from the press plane. There is no mould. " << plan.WayOut);
+      vtkLacunaFieldData::Set(output, SuggestedViewDirectionName, ToVector(plan.View), 3);
     }
-    vtkLacunaFieldData::Set(
-      output, "Angles", { Degrees * layout.Frame.Theta, Degrees * layout.Frame.Psi }, 2);
-    vtkLacunaFieldData::Set(output, SingleValuedName, { layout.SingleValued ? 1.0 : 0.0 }, 1);
-    vtkLacunaFieldData::Set(output, "SurfaceOffset", { layout.Offset }, 1);
-    vtkLacunaFieldData::Set(output, "Outward", { layout.ConvexOutward ? 1.0 : 0.0 }, 1);
-    SetText(output, "PlaneSource",
-      plan.OwnPlane && plan.IsSolid ? "best direction of pressing"
-        : plan.OwnPlane             ? "PlaneNormal of the hole filler"
-                                    : "least squares plane through Fitted over the defect");
+    vtkWarningMacro(<< "the mill does not see all of the surface when its plane lies flat: at "
+                    << lacuna::FormatPlace(toWorld, layout.SteepestPoint) << " it is "
+                    << lacuna::FormatNumber(std::round(layout.SteepestAngle))
+                    << " degrees from the press plane. There is no mould. " << plan.WayOut);
+  }
+  vtkLacunaFieldData::Set(
+    output, "Angles", { Degrees * layout.Frame.Theta, Degrees * layout.Frame.Psi }, 2);
+  vtkLacunaFieldData::Set(output, SingleValuedName, { layout.SingleValued ? 1.0 : 0.0 }, 1);
+  vtkLacunaFieldData::Set(output, "SurfaceOffset", { layout.Offset }, 1);
+  vtkLacunaFieldData::Set(output, "Outward", { layout.ConvexOutward ? 1.0 : 0.0 }, 1);
+  SetText(output, "PlaneSource",
+    plan.OwnPlane && plan.IsSolid ? "best direction of pressing"
+      : plan.OwnPlane             ? "PlaneNormal of the hole filler"
+                                  : "least squares plane through Fitted over the defect");
 
-    vtkLacunaCoordinates::MarkPress(map, output);
-    lacuna::ParameterText parameters;
-    parameters.Add("PlaneMethod", this->PlaneMethod)
-      .Add("Mould", this->Mould)
-      .Add("Seating", this->Seating)
-      .Add("PlateThickness", this->PlateThickness)
-      .Add("PlateMargin", this->PlateMargin)
-      .Add("FlangeWidth", this->FlangeWidth)
-      .Add("BlockSize", this->BlockSize)
-      .Add("OutputSpacing", this->OutputSpacing)
-      .Add("ConvexSide", this->ConvexSide);
-    vtkLacunaProvenance::Record(output, this, { map }, parameters.Get());
-  };
-  return vtkLacunaExecution::RunAgreed(this, outputVector, isWanted, body);
+  vtkLacunaCoordinates::MarkPress(map, output);
+}
+
+//------------------------------------------------------------------------------
+std::string vtkLacunaPressOrientation::Parameters(int) const
+{
+  return lacuna::ParameterText()
+    .Add("PlaneMethod", this->PlaneMethod)
+    .Add("Mould", this->Mould)
+    .Add("Seating", this->Seating)
+    .Add("PlateThickness", this->PlateThickness)
+    .Add("PlateMargin", this->PlateMargin)
+    .Add("FlangeWidth", this->FlangeWidth)
+    .Add("BlockSize", this->BlockSize)
+    .Add("OutputSpacing", this->OutputSpacing)
+    .Add("ConvexSide", this->ConvexSide)
+    .Get();
 }
 
 //------------------------------------------------------------------------------

@@ -80,8 +80,8 @@
 #ifndef vtkLacunaPressOrientation_h
 #define vtkLacunaPressOrientation_h
 
+#include "vtkLacunaAlgorithm.h"
 #include "vtkLacunaFiltersFabricationModule.h" // for export macro
-#include "vtkLacunaVersionCompat.h"            // for stops
 #include "vtkStructuredGridAlgorithm.h"
 
 namespace lacuna
@@ -91,13 +91,12 @@ struct PressSurface;
 }
 
 class VTKLACUNAFILTERSFABRICATION_EXPORT vtkLacunaPressOrientation
-  : public vtkStructuredGridAlgorithm
+  : public vtkLacunaAlgorithmOf(vtkStructuredGridAlgorithm)
 {
 public:
   static vtkLacunaPressOrientation* New();
   vtkTypeMacro(vtkLacunaPressOrientation, vtkStructuredGridAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
-  vtkLacunaKeepTimeAtStops();
 
   static constexpr const char* PressRegionName = "PressRegion";
   static constexpr const char* DefectMaskName = "DefectMask";
@@ -184,12 +183,12 @@ public:
   ///@}
 
 protected:
-  vtkLacunaPressOrientation() = default;
+  vtkLacunaPressOrientation() { this->Sharing = lacuna::Share::FirstRank; }
   ~vtkLacunaPressOrientation() override = default;
   int FillInputPortInformation(int port, vtkInformation* info) override;
-  int RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
-  int RequestUpdateExtent(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
-  int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
+  void Announce(const lacuna::Ports& ports) override;
+  void Make(const lacuna::Ports& ports, vtkLacunaExecution& execution) override;
+  std::string Parameters(int port) const override;
 
 private:
   vtkLacunaPressOrientation(const vtkLacunaPressOrientation&) = delete;

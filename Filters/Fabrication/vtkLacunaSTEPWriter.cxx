@@ -9,12 +9,10 @@
 #include "lacunaStepProgram.h"
 #include "vtkCellArray.h"
 #include "vtkCellArrayIterator.h"
-#include "vtkErrorCode.h"
 #include "vtkInformation.h"
 #include "vtkLacunaExecution.h"
 #include "vtkLacunaMirrored.h"
 #include "vtkLacunaProvenance.h"
-#include "vtkLacunaWriting.h"
 #include "vtkLogger.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
@@ -97,43 +95,22 @@ int vtkLacunaSTEPWriter::FillInputPortInformation(int, vtkInformation* info)
 }
 
 //------------------------------------------------------------------------------
-int vtkLacunaSTEPWriter::ProcessRequest(
-  vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
+void vtkLacunaSTEPWriter::ClearResults()
 {
-  return vtkLacunaWriting::AskForWhole(this, this->Piece, request, inputs)
-    ? 1
-    : this->Superclass::ProcessRequest(request, inputs, outputs);
-}
-
-//------------------------------------------------------------------------------
-int vtkLacunaSTEPWriter::Write()
-{
-  this->FileSize = 0;
-  this->Superclass::Write();
-  this->SetErrorCode(vtkLacunaWriting::Check(this, this->FileSize > 0 || this->Piece > 0));
-  return this->GetErrorCode() == vtkErrorCode::NoError ? 1 : 0;
-}
-
-//------------------------------------------------------------------------------
-void vtkLacunaSTEPWriter::WriteData()
-{
+  this->Superclass::ClearResults();
   this->MaximumDeviation = 0;
   this->NumberOfSolids = this->NumberOfFaces = 0;
-  this->FileSize = 0;
-  if (this->Piece > 0)
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaSTEPWriter::WriteFile()
+{
+  auto* surface = vtkPolyData::SafeDownCast(this->GetInput());
+  if (!surface || surface->GetNumberOfPoints() == 0)
   {
-    return; // another process writes
+    throw std::runtime_error("the input has no surface");
   }
-  this->SetErrorCode(vtkLacunaWriting::Run(this, this->FileName,
-    [this]
-    {
-      auto* surface = vtkPolyData::SafeDownCast(this->GetInput());
-      if (!surface || surface->GetNumberOfPoints() == 0)
-      {
-        throw std::runtime_error("the input has no surface");
-      }
-      this->WriteSolid(surface);
-    }));
+  this->WriteSolid(surface);
 }
 
 //------------------------------------------------------------------------------

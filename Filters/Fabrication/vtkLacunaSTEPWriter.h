@@ -26,20 +26,19 @@
 #define vtkLacunaSTEPWriter_h
 
 #include "vtkLacunaFiltersFabricationModule.h" // for export macro
-#include "vtkWriter.h"
+#include "vtkLacunaWriter.h"
 
 class vtkPolyData;
 
-class VTKLACUNAFILTERSFABRICATION_EXPORT vtkLacunaSTEPWriter : public vtkWriter
+class VTKLACUNAFILTERSFABRICATION_EXPORT vtkLacunaSTEPWriter : public vtkLacunaWriter
 {
 public:
   static vtkLacunaSTEPWriter* New();
-  vtkTypeMacro(vtkLacunaSTEPWriter, vtkWriter);
+  vtkTypeMacro(vtkLacunaSTEPWriter, vtkLacunaWriter);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   /** Updates the input and writes. Returns 1, or 0 when there is no new file, also because a filter
    * before this one failed. */
-  int Write() override;
 
   ///@{
   /** The file to write, usually *.step or *.stp. */
@@ -90,9 +89,8 @@ protected:
   ~vtkLacunaSTEPWriter() override;
 
   int FillInputPortInformation(int port, vtkInformation* info) override;
-  int ProcessRequest(
-    vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
-  void WriteData() override;
+  void WriteFile() override;
+  void ClearResults() override;
 
 private:
   vtkLacunaSTEPWriter(const vtkLacunaSTEPWriter&) = delete;
@@ -100,15 +98,11 @@ private:
 
   void WriteSolid(vtkPolyData* surface);
 
-  char* FileName = nullptr;
   double Tolerance = 0.02;
   bool AllowMirrored = false;
   char* Note = nullptr;
-  int Piece = 0;
-  int NumberOfPieces = 1;
   double MaximumDeviation = 0;
   int NumberOfSolids = 0;
   int NumberOfFaces = 0;
-  vtkTypeInt64 FileSize = 0;
 };
 #endif
