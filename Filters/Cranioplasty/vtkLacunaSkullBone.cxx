@@ -9,13 +9,9 @@
 #include "vtkDataArray.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
-#include "vtkInformationVector.h"
 #include "vtkLacunaArrays.h"
-#include "vtkLacunaExecution.h"
 #include "vtkLacunaFieldData.h"
 #include "vtkLacunaProposedLevel.h"
-#include "vtkLacunaProvenance.h"
-#include "vtkLacunaRequest.h"
 #include "vtkLacunaScalarType.h"
 #include "vtkLacunaTrackedSlices.h"
 #include "vtkLacunaVolumeDirection.h"
@@ -25,7 +21,6 @@
 #include "vtkPointData.h"
 #include "vtkPolyData.h"
 #include "vtkSelectEnclosedPoints.h"
-#include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkTriangleFilter.h"
 
 #include <algorithm>
@@ -41,7 +36,6 @@ vtkStandardNewMacro(vtkLacunaSkullBone);
 
 namespace
 {
-using SDDP = vtkStreamingDemandDrivenPipeline;
 
 enum Kind : std::uint8_t
 {
@@ -445,145 +439,107 @@ int vtkLacunaSkullBone::FillInputPortInformation(int port, vtkInformation* info)
 }
 
 //------------------------------------------------------------------------------
-int vtkLacunaSkullBone::RequestInformation(
-  vtkInformation*, vtkInformationVector**, vtkInformationVector* outputs)
+void vtkLacunaSkullBone::Make(const lacuna::Ports& ports, vtkLacunaExecution& execution)
 {
-  // Each rank makes the extent that VTK turns its piece into.
-  return vtkLacunaExecution::RunInformation(this, outputs,
-    [&] { outputs->GetInformationObject(0)->Set(vtkAlgorithm::CAN_PRODUCE_SUB_EXTENT(), 1); });
-}
-
-//------------------------------------------------------------------------------
-int vtkLacunaSkullBone::RequestUpdateExtent(
-  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
-{
-  for (int port = 0; port < 2; ++port)
+  auto* input = ports.GetInput<vtkImageData>();
+  if (!std::isfinite(this->Level))
   {
-    if (vtkInformation* input = inputs[port]->GetInformationObject(0)) // else none is connected
-    {
-      vtkLacunaRequest::Whole(this, input, outputs);
-    }
+    throw std::runtime_error("Level must be a finite number");
   }
-  return 1;
-}
-
-//------------------------------------------------------------------------------
-int vtkLacunaSkullBone::RequestData(
-  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
-{
-  const bool isWanted = vtkLacunaRequest::IsWanted(outputs);
-  return vtkLacunaExecution::RunAgreed(this, outputs, isWanted,
-    [&](vtkLacunaExecution& execution)
+  if (!(this->BridgeDiameter >= 0 && this->BridgeDiameter <= MostBridge))
+  {
+    throw std::runtime_error("BridgeDiameter is " + lacuna::FormatNumber(this->BridgeDiameter) +
+      " mm; it must be between 0 and 20");
+  }
+  vtkLacunaTrackedSlices::Refuse(input);
+  vtkLacunaVolumeDirection::Check(input);
+  vtkDataArray* scalars = input->GetPointData()->GetScalars();
+  if (!scalars || scalars->GetNumberOfComponents() != 1)
+  {
+    throw std::runtime_error("the image has no active point scalars with one component; "
+                             "choose an array with one value per voxel");
+  }
+  const vtkIdType count = input->GetNumberOfPoints();
+  lacuna::RequireMemory("the bone",
+    static_cast<double>(count) * (scalars->GetDataTypeSize() + 1 + sizeof(vtkIdType) / 4));
+  const auto bone =
+    vtkSmartPointer<vtkDataArray>::Take(vtkDataArray::CreateDataArray(scalars->GetDataType()));
+  vtkLacunaArrays::Copy(scalars, bone);
+  const lacuna::ScalarType type = vtkLacunaScalarType::Get(bone);
+  Kinds kinds;
+  input->GetDimensions(kinds.Size);
+  kinds.Of.assign(static_cast<std::size_t>(count), Below);
+  const bool isAny = lacuna::DispatchScalars(type, bone->GetVoidPointer(0),
+    [&](const auto* values)
     {
-      vtkImageData* input = vtkImageData::GetData(inputs[0]);
-      if (!input || input->GetNumberOfPoints() == 0)
+      bool any = false;
+      for (vtkIdType p = 0; p < count; ++p)
       {
-        return; // empty in, empty out
-      }
-      if (!std::isfinite(this->Level))
-      {
-        throw std::runtime_error("Level must be a finite number");
-      }
-      if (!(this->BridgeDiameter >= 0 && this->BridgeDiameter <= MostBridge))
-      {
-        throw std::runtime_error("BridgeDiameter is " + lacuna::FormatNumber(this->BridgeDiameter) +
-          " mm; it must be between 0 and 20");
-      }
-      vtkLacunaTrackedSlices::Refuse(input);
-      vtkLacunaVolumeDirection::Check(input);
-      vtkDataArray* scalars = input->GetPointData()->GetScalars();
-      if (!scalars || scalars->GetNumberOfComponents() != 1)
-      {
-        throw std::runtime_error("the image has no active point scalars with one component; "
-                                 "choose an array with one value per voxel");
-      }
-      const vtkIdType count = input->GetNumberOfPoints();
-      lacuna::RequireMemory("the bone",
-        static_cast<double>(count) * (scalars->GetDataTypeSize() + 1 + sizeof(vtkIdType) / 4));
-      const auto bone =
-        vtkSmartPointer<vtkDataArray>::Take(vtkDataArray::CreateDataArray(scalars->GetDataType()));
-      vtkLacunaArrays::Copy(scalars, bone);
-      const lacuna::ScalarType type = vtkLacunaScalarType::Get(bone);
-      Kinds kinds;
-      input->GetDimensions(kinds.Size);
-      kinds.Of.assign(static_cast<std::size_t>(count), Below);
-      const bool isAny = lacuna::DispatchScalars(type, bone->GetVoidPointer(0),
-        [&](const auto* values)
+        if (static_cast<double>(values[p]) >= this->Level)
         {
-          bool any = false;
-          for (vtkIdType p = 0; p < count; ++p)
-          {
-            if (static_cast<double>(values[p]) >= this->Level)
-            {
-              kinds.Of[p] = Bone;
-              any = true;
-            }
-          }
-          return any;
-        });
-      if (!isAny)
-      {
-        double range[2];
-        scalars->GetRange(range);
-        throw std::runtime_error("no voxel is at or above Level, " +
-          lacuna::FormatNumber(this->Level) + "; the values are " + lacuna::FormatNumber(range[0]) +
-          " to " + lacuna::FormatNumber(range[1]) + ". Lower Level");
-      }
-      vtkPolyData* exclude = vtkPolyData::GetData(inputs[1]);
-      if (exclude && exclude->GetNumberOfCells() > 0)
-      {
-        TakeAway(kinds, input, exclude);
-        if (std::find(kinds.Of.begin(), kinds.Of.end(), Bone) == kinds.Of.end())
-        {
-          throw std::runtime_error("no bone is left outside of Exclude; make its surfaces smaller");
+          kinds.Of[p] = Bone;
+          any = true;
         }
       }
-      const double end = this->BridgeDiameter > 0 ? 0.5 : 1; // of all without bridges
-      execution.SetStage(0, 0.8 * end);
-      ChooseBone(kinds, input->GetSpacing(), execution);
-      execution.SetStage(0.8 * end, end);
-      MarkHalo(kinds);
-      execution.Report(0.5);
-      vtkIdType removed = 0;
-      vtkIdType made = 0;
-      lacuna::DispatchScalarType(type,
-        [&](auto zero)
-        {
-          auto* values = static_cast<decltype(zero)*>(bone->GetVoidPointer(0));
-          const double contrast = GetContrast(values, kinds, this->Level);
-          removed = Lower(values, kinds, this->Level, contrast);
-          if (this->BridgeDiameter > 0)
-          {
-            execution.SetStage(end, 1);
-            made = Bridge(values, GetVolume(input, values, type), this->Level, this->BridgeDiameter,
-              contrast, execution);
-          }
-        });
-
-      vtkImageData* output = vtkImageData::GetData(outputs);
-      output->ShallowCopy(input);
-      output->GetPointData()->SetScalars(bone);
-      const double* spacing = input->GetSpacing();
-      vtkLacunaFieldData::Set(output, "BoneLevel", { this->Level }, 1);
-      vtkLacunaFieldData::Set(output, "RemovedVolume",
-        { static_cast<double>(removed) * std::abs(spacing[0] * spacing[1] * spacing[2]) / 1000 },
-        1);
-      vtkLacunaFieldData::Set(output, "BridgedVolume",
-        { static_cast<double>(made) * std::abs(spacing[0] * spacing[1] * spacing[2]) / 1000 }, 1);
-      int asked[6];
-      outputs->GetInformationObject(0)->Get(SDDP::UPDATE_EXTENT(), asked);
-      output->Crop(asked);
-      std::vector<vtkDataObject*> from{ input };
-      if (exclude)
-      {
-        from.push_back(exclude);
-      }
-      vtkLacunaProvenance::Record(output, this, from,
-        lacuna::ParameterText()
-          .Add("Level", this->Level)
-          .Add("BridgeDiameter", this->BridgeDiameter)
-          .Get());
+      return any;
     });
+  if (!isAny)
+  {
+    double range[2];
+    scalars->GetRange(range);
+    throw std::runtime_error("no voxel is at or above Level, " + lacuna::FormatNumber(this->Level) +
+      "; the values are " + lacuna::FormatNumber(range[0]) + " to " +
+      lacuna::FormatNumber(range[1]) + ". Lower Level");
+  }
+  auto* exclude = ports.GetInput<vtkPolyData>(1);
+  if (exclude && exclude->GetNumberOfCells() > 0)
+  {
+    TakeAway(kinds, input, exclude);
+    if (std::find(kinds.Of.begin(), kinds.Of.end(), Bone) == kinds.Of.end())
+    {
+      throw std::runtime_error("no bone is left outside of Exclude; make its surfaces smaller");
+    }
+  }
+  const double end = this->BridgeDiameter > 0 ? 0.5 : 1; // of all without bridges
+  execution.SetStage(0, 0.8 * end);
+  ChooseBone(kinds, input->GetSpacing(), execution);
+  execution.SetStage(0.8 * end, end);
+  MarkHalo(kinds);
+  execution.Report(0.5);
+  vtkIdType removed = 0;
+  vtkIdType made = 0;
+  lacuna::DispatchScalarType(type,
+    [&](auto zero)
+    {
+      auto* values = static_cast<decltype(zero)*>(bone->GetVoidPointer(0));
+      const double contrast = GetContrast(values, kinds, this->Level);
+      removed = Lower(values, kinds, this->Level, contrast);
+      if (this->BridgeDiameter > 0)
+      {
+        execution.SetStage(end, 1);
+        made = Bridge(values, GetVolume(input, values, type), this->Level, this->BridgeDiameter,
+          contrast, execution);
+      }
+    });
+
+  auto* output = ports.GetOutput<vtkImageData>();
+  output->ShallowCopy(input);
+  output->GetPointData()->SetScalars(bone);
+  const double* spacing = input->GetSpacing();
+  vtkLacunaFieldData::Set(output, "BoneLevel", { this->Level }, 1);
+  vtkLacunaFieldData::Set(output, "RemovedVolume",
+    { static_cast<double>(removed) * std::abs(spacing[0] * spacing[1] * spacing[2]) / 1000 }, 1);
+  vtkLacunaFieldData::Set(output, "BridgedVolume",
+    { static_cast<double>(made) * std::abs(spacing[0] * spacing[1] * spacing[2]) / 1000 }, 1);
+}
+
+//------------------------------------------------------------------------------
+std::string vtkLacunaSkullBone::Parameters(int) const
+{
+  return lacuna::ParameterText()
+    .Add("Level", this->Level)
+    .Add("BridgeDiameter", this->BridgeDiameter)
+    .Get();
 }
 
 //------------------------------------------------------------------------------

@@ -28,18 +28,18 @@
 #define vtkLacunaSkullBone_h
 
 #include "vtkImageAlgorithm.h"
+#include "vtkLacunaAlgorithm.h"
 #include "vtkLacunaFiltersCranioplastyModule.h" // for export macro
-#include "vtkLacunaVersionCompat.h"             // for stops
 
 #include <array> // for the proposed level
 
-class VTKLACUNAFILTERSCRANIOPLASTY_EXPORT vtkLacunaSkullBone : public vtkImageAlgorithm
+class VTKLACUNAFILTERSCRANIOPLASTY_EXPORT vtkLacunaSkullBone
+  : public vtkLacunaAlgorithmOf(vtkImageAlgorithm)
 {
 public:
   static vtkLacunaSkullBone* New();
   vtkTypeMacro(vtkLacunaSkullBone, vtkImageAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
-  vtkLacunaKeepTimeAtStops();
 
   static constexpr double Gap = 3;         ///< mm between the middles of voxels
   static constexpr double SmallPart = 1;   ///< ml
@@ -68,9 +68,8 @@ protected:
   vtkLacunaSkullBone();
   ~vtkLacunaSkullBone() override = default;
   int FillInputPortInformation(int port, vtkInformation* info) override;
-  int RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
-  int RequestUpdateExtent(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
-  int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
+  void Make(const lacuna::Ports& ports, vtkLacunaExecution& execution) override;
+  std::string Parameters(int port) const override;
 
 private:
   vtkLacunaSkullBone(const vtkLacunaSkullBone&) = delete;

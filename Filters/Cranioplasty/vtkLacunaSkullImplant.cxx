@@ -15,11 +15,7 @@
 #include "vtkFieldData.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
-#include "vtkInformationVector.h"
-#include "vtkLacunaExecution.h"
 #include "vtkLacunaFieldData.h"
-#include "vtkLacunaProvenance.h"
-#include "vtkLacunaRequest.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
@@ -262,6 +258,8 @@ std::string GetThinPlaces(const lacuna::SkullImplant& implant)
 //------------------------------------------------------------------------------
 vtkLacunaSkullImplant::vtkLacunaSkullImplant()
 {
+  this->Sharing = lacuna::Share::FirstRank;
+  this->TakesBlocks = true;
   this->SetNumberOfInputPorts(3);
   this->SetNumberOfOutputPorts(3);
 }
@@ -288,20 +286,6 @@ int vtkLacunaSkullImplant::FillInputPortInformation(int port, vtkInformation* in
   {
     info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkPolyData");
     info->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1);
-  }
-  return 1;
-}
-
-//------------------------------------------------------------------------------
-int vtkLacunaSkullImplant::RequestUpdateExtent(
-  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
-{
-  for (int port = 0; port < 3; ++port)
-  {
-    if (vtkInformation* info = inputs[port]->GetInformationObject(0))
-    {
-      vtkLacunaRequest::Whole(this, info, outputs);
-    }
   }
   return 1;
 }
@@ -338,239 +322,222 @@ lacuna::SkullImplantOptions vtkLacunaSkullImplant::GetOptions() const
 }
 
 //------------------------------------------------------------------------------
-int vtkLacunaSkullImplant::RequestData(
-  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
+void vtkLacunaSkullImplant::Make(const lacuna::Ports& ports, vtkLacunaExecution& execution)
 {
-  const bool isWanted = vtkLacunaRequest::IsWanted(outputs); // the implant is one piece
-  const auto body = [&](vtkLacunaExecution& execution)
+  auto* image = ports.GetInput<vtkImageData>();
+  auto* outline = ports.GetInput<vtkPolyData>(1);
+  auto* other = ports.GetInput<vtkDataSet>(2);
+  const bool hasTemplate = other && other->GetNumberOfPoints() > 0;
+  if (!(this->Level > 0) || !std::isfinite(this->Level))
   {
-    vtkImageData* image = vtkImageData::GetData(inputs[0]);
-    vtkPolyData* outline = vtkPolyData::GetData(inputs[1]);
-    vtkDataSet* other = vtkDataSet::GetData(inputs[2]);
-    const bool hasTemplate = other && other->GetNumberOfPoints() > 0;
-    if (!image || image->GetNumberOfPoints() == 0)
-    {
-      return; // empty in, empty out
-    }
-    if (!(this->Level > 0) || !std::isfinite(this->Level))
-    {
-      throw std::runtime_error("Level is " + lacuna::FormatNumber(this->Level) +
-        "; it must be a number above 0, the grey level of bone");
-    }
-    if (this->DefectChoice != Largest && this->DefectChoice != NearestToPoint)
-    {
-      throw std::runtime_error("DefectChoice is " + std::to_string(this->DefectChoice) +
-        "; it must be 0 (Largest) or 1 (Nearest to Point)");
-    }
-    if (!(this->Density > 0 && std::isfinite(this->Density)))
-    {
-      throw std::runtime_error("Density is " + lacuna::FormatNumber(this->Density) +
-        "; it must be a number of g/cm^3 above 0");
-    }
-    const lacuna::SkullImplantOptions options = this->GetOptions();
-    CheckSkullImplantOptions(options);
-    if (!(this->TemplateLevel >= 0) || !std::isfinite(this->TemplateLevel))
-    {
-      throw std::runtime_error("TemplateLevel is " + lacuna::FormatNumber(this->TemplateLevel) +
-        "; it must be a number above 0, the grey level of the template's bone, or 0 for Level");
-    }
-    vtkSmartPointer<vtkDataArray> keep;
-    const lacuna::VoxelVolume volume = lacuna::GetBoneVolume(image, keep);
+    throw std::runtime_error("Level is " + lacuna::FormatNumber(this->Level) +
+      "; it must be a number above 0, the grey level of bone");
+  }
+  if (this->DefectChoice != Largest && this->DefectChoice != NearestToPoint)
+  {
+    throw std::runtime_error("DefectChoice is " + std::to_string(this->DefectChoice) +
+      "; it must be 0 (Largest) or 1 (Nearest to Point)");
+  }
+  if (!(this->Density > 0 && std::isfinite(this->Density)))
+  {
+    throw std::runtime_error("Density is " + lacuna::FormatNumber(this->Density) +
+      "; it must be a number of g/cm^3 above 0");
+  }
+  const lacuna::SkullImplantOptions options = this->GetOptions();
+  CheckSkullImplantOptions(options);
+  if (!(this->TemplateLevel >= 0) || !std::isfinite(this->TemplateLevel))
+  {
+    throw std::runtime_error("TemplateLevel is " + lacuna::FormatNumber(this->TemplateLevel) +
+      "; it must be a number above 0, the grey level of the template's bone, or 0 for Level");
+  }
+  vtkSmartPointer<vtkDataArray> keep;
+  const lacuna::VoxelVolume volume = lacuna::GetBoneVolume(image, keep);
 
-    execution.SetStage(0, 0.3);
-    const lacuna::SymmetryResult symmetry = FindSymmetry(volume, this->Level, execution);
-    execution.SetStage(0.3, 0.32);
-    const Vec3 center = FindSkullCenter(volume, this->Level, symmetry.Plane, execution);
-    execution.SetStage(0.32, 0.35);
-    lacuna::SkullRays rays = TraceSkull(volume, this->Level, center, RaySpacing, execution);
-    std::vector<std::vector<int>> defects;
-    const bool isDrawn = outline && outline->GetNumberOfPoints() > 0;
-    if (isDrawn)
+  execution.SetStage(0, 0.3);
+  const lacuna::SymmetryResult symmetry = FindSymmetry(volume, this->Level, execution);
+  execution.SetStage(0.3, 0.32);
+  const Vec3 center = FindSkullCenter(volume, this->Level, symmetry.Plane, execution);
+  execution.SetStage(0.32, 0.35);
+  lacuna::SkullRays rays = TraceSkull(volume, this->Level, center, RaySpacing, execution);
+  std::vector<std::vector<int>> defects;
+  const bool isDrawn = outline && outline->GetNumberOfPoints() > 0;
+  if (isDrawn)
+  {
+    defects.push_back(FindRaysWithin(rays, lacuna::GetCurve(outline)));
+    if (defects[0].empty())
     {
-      defects.push_back(FindRaysWithin(rays, lacuna::GetCurve(outline)));
-      if (defects[0].empty())
-      {
-        throw std::runtime_error("the outline of the defect encloses nothing of the skull");
-      }
-      for (const int ray : defects[0])
-      {
-        rays.Kinds[ray] = lacuna::SkullRayKind::Open;
-      }
+      throw std::runtime_error("the outline of the defect encloses nothing of the skull");
     }
-    else
+    for (const int ray : defects[0])
     {
-      defects = FindDefects(rays);
+      rays.Kinds[ray] = lacuna::SkullRayKind::Open;
     }
-    if (defects.empty())
+  }
+  else
+  {
+    defects = FindDefects(rays);
+  }
+  if (defects.empty())
+  {
+    throw std::runtime_error("no hole of 1 cm^2 or more was found in the vault of the skull" +
+      GetSmallHole(rays) +
+      ". Look at the bone at this Level, or draw an outline around the defect");
+  }
+  const lacuna::SkullHoles holes(rays, defects);
+  holes.SetOutput(ports.GetOutput<vtkPolyData>(1), isDrawn ? 0 : 1);
+  std::size_t chosen = 0;
+  if (!isDrawn && this->DefectChoice == NearestToPoint)
+  {
+    const Vec3 point{ this->Point[0], this->Point[1], this->Point[2] };
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t k = 0; k < defects.size(); ++k)
     {
-      throw std::runtime_error("no hole of 1 cm^2 or more was found in the vault of the skull" +
-        GetSmallHole(rays) +
-        ". Look at the bone at this Level, or draw an outline around the defect");
-    }
-    const lacuna::SkullHoles holes(rays, defects);
-    holes.SetOutput(vtkPolyData::GetData(outputs, 1), isDrawn ? 0 : 1);
-    std::size_t chosen = 0;
-    if (!isDrawn && this->DefectChoice == NearestToPoint)
-    {
-      const Vec3 point{ this->Point[0], this->Point[1], this->Point[2] };
-      double least = std::numeric_limits<double>::infinity();
-      for (std::size_t k = 0; k < defects.size(); ++k)
+      const double distance = holes.GetDistance(k, point);
+      if (distance < least)
       {
-        const double distance = holes.GetDistance(k, point);
-        if (distance < least)
-        {
-          least = distance;
-          chosen = k;
-        }
-      }
-      if (!(least <= MostDistance))
-      {
-        throw std::runtime_error("Point " + NameOf(point) + " is " + Rounded(least) +
-          " mm away from the nearest hole. Found: " + holes.GetText());
+        least = distance;
+        chosen = k;
       }
     }
+    if (!(least <= MostDistance))
+    {
+      throw std::runtime_error("Point " + NameOf(point) + " is " + Rounded(least) +
+        " mm away from the nearest hole. Found: " + holes.GetText());
+    }
+  }
 
-    execution.SetStage(0.35, 0.4);
-    const lacuna::SoundBone bone = GetSoundBone(rays);
-    PlacedTemplate example;
-    if (hasTemplate)
-    {
-      example = FindTemplate(
-        other, this->TemplateLevel > 0 ? this->TemplateLevel : this->Level, rays, bone, execution);
-    }
-    execution.SetStage(0.4, 0.8);
-    std::vector<Vec3> missing;
-    for (const int ray : defects[chosen])
-    {
-      missing.push_back(rays.Directions[ray]);
-    }
-    const lacuna::SkullShape shape(
-      bone, missing, symmetry.Plane, execution, hasTemplate ? &example.Rays : nullptr);
-    execution.SetStage(0.8, 1);
-    const std::unique_ptr<lacuna::BoneDistance> near =
-      MakeBoneDistance(volume, keep, this->Level, GetBox(rays, missing));
-    const lacuna::SkullImplant implant =
-      MakeSkullImplant(volume, rays, defects[chosen], shape, *near, options, execution);
+  execution.SetStage(0.35, 0.4);
+  const lacuna::SoundBone bone = GetSoundBone(rays);
+  PlacedTemplate example;
+  if (hasTemplate)
+  {
+    example = FindTemplate(
+      other, this->TemplateLevel > 0 ? this->TemplateLevel : this->Level, rays, bone, execution);
+  }
+  execution.SetStage(0.4, 0.8);
+  std::vector<Vec3> missing;
+  for (const int ray : defects[chosen])
+  {
+    missing.push_back(rays.Directions[ray]);
+  }
+  const lacuna::SkullShape shape(
+    bone, missing, symmetry.Plane, execution, hasTemplate ? &example.Rays : nullptr);
+  execution.SetStage(0.8, 1);
+  const std::unique_ptr<lacuna::BoneDistance> near =
+    MakeBoneDistance(volume, keep, this->Level, GetBox(rays, missing));
+  const lacuna::SkullImplant implant =
+    MakeSkullImplant(volume, rays, defects[chosen], shape, *near, options, execution);
 
-    std::vector<std::string> warnings = implant.Warnings;
-    if (!isDrawn && holes.GetArea(chosen) < SmallHole)
-    {
-      warnings.push_back("the hole has only " + holes.GetText(chosen) +
-        ": it may be thin bone that this Level does not show. Look at it in the CT");
-    }
-    if (hasTemplate && shape.GetOuterFactor() == 0 && shape.GetThicknessFactor() == 0)
-    {
-      warnings.emplace_back(
-        "the template is not used: the sound bone of this skull has nothing of its shape. Compare "
-        "both in the picture, or give another skull");
-    }
-    if (implant.LargestError > lacuna::TrustedError)
-    {
-      warnings.push_back(GetDoubts(implant, rays, shape.GetPlane()));
-    }
-    if (const std::string thin = GetThinPlaces(implant); !thin.empty())
-    {
-      warnings.push_back(thin);
-    }
-    if (implant.UndercutWidth > WideUndercut)
-    {
-      warnings.push_back("the wall of bone has undercuts, so that the gap beside the implant is up "
-                         "to " +
-        Rounded(implant.UndercutWidth + this->EdgeClearance) + " mm wide, most at " +
-        NameOf(implant.UndercutPoint) + ". Another InsertionDirection may suit this place better");
-    }
-    vtkNew<vtkStringArray> told;
-    told->SetName("Warnings");
-    for (const std::string& warning : warnings)
-    {
-      vtkWarningMacro(<< warning);
-      told->InsertNextValue(warning);
-    }
-    vtkPolyData* output = vtkPolyData::GetData(outputs, 0);
-    lacuna::SetImplant(output, implant);
-    output->GetFieldData()->AddArray(told);
-    vtkPolyData* plates = vtkPolyData::GetData(outputs, 2);
-    lacuna::SetPlates(plates, implant, this->ScrewLength);
-    const auto set = [&](const char* name, double value)
-    { vtkLacunaFieldData::Set(output, name, { value }, 1); };
-    const auto setPoint = [&](const char* name, const Vec3& p) {
-      vtkLacunaFieldData::Set(output, name, { p[0], p[1], p[2] }, 3);
-    };
-    const auto range = std::minmax_element(implant.Thickness.begin(), implant.Thickness.end());
-    set("ChosenDefect", isDrawn ? 0 : static_cast<double>(chosen + 1));
-    set("Volume", implant.Volume);
-    set("Mass", implant.Volume * this->Density / 1000);
-    set("OuterArea", implant.OuterArea);
-    set("DefectArea", implant.HoleArea);
-    set("ThicknessMinimum", *range.first);
-    set("ThicknessMean",
-      std::accumulate(implant.Thickness.begin(), implant.Thickness.end(), 0.0) /
-        static_cast<double>(implant.Thickness.size()));
-    set("ThicknessMaximum", *range.second);
-    set("PredictedErrorRMS", implant.ErrorRMS);
-    set("PredictedErrorMaximum", implant.LargestError);
-    setPoint("PredictedErrorMaximumPoint", implant.LargestErrorPoint);
-    setPoint("InsertionDirection", implant.InsertionDirection);
-    set("LeastTaper", implant.LeastTaper);
-    set("InsertionClearance", implant.InsertionClearance);
-    set("UndercutVolume", implant.UndercutVolume);
-    set("UndercutWidth", implant.UndercutWidth);
-    setPoint("UndercutPoint", implant.UndercutPoint);
-    set("MinimumThickness", implant.MinimumThickness);
-    setPoint("MinimumThicknessPoint", implant.ThinnestPoint);
-    set("NumberOfHoles", implant.Holes);
-    const lacuna::MirrorPlane& plane = shape.GetPlane();
-    setPoint("SymmetryPlaneOrigin", center - plane.Distance(center) * plane.Normal);
-    setPoint("SymmetryPlaneNormal", plane.Normal);
-
-    if (hasTemplate)
-    {
-      set("TemplateFitRMS", example.Fit.RMS);
-      set("TemplateScale", example.Fit.Scale);
-      set("TemplateFactor", shape.GetOuterFactor());
-      set("TemplateThicknessFactor", shape.GetThicknessFactor());
-    }
-
-    lacuna::ParameterText parameters;
-    parameters.Add("Level", this->Level)
-      .Add("DefectChoice", this->DefectChoice)
-      .Add("Point", std::vector<double>(this->Point, this->Point + 3))
-      .Add("EdgeClearance", this->EdgeClearance)
-      .Add("Thickness", this->Thickness)
-      .Add("MinimumThickness", this->MinimumThickness)
-      .Add("InsertionDirection",
-        std::vector<double>(this->InsertionDirection, this->InsertionDirection + 3))
-      .Add("OuterOffset", this->OuterOffset)
-      .Add("InnerOffset", this->InnerOffset)
-      .Add("OffsetFade", this->OffsetFade)
-      .Add("Parts", this->Parts)
-      .Add("DrainageSpacing", this->DrainageSpacing)
-      .Add("DrainageDiameter", this->DrainageDiameter)
-      .Add("SutureSpacing", this->SutureSpacing)
-      .Add("SutureDiameter", this->SutureDiameter)
-      .Add("Plates", this->Plates)
-      .Add("ScrewDiameter", this->ScrewDiameter)
-      .Add("ScrewLength", this->ScrewLength)
-      .Add("RimDistance", this->RimDistance)
-      .Add("EngravedText", this->EngravedText)
-      .Add("TextHeight", this->TextHeight)
-      .Add("TriangleSize", this->TriangleSize)
-      .Add("Density", this->Density)
-      .Add("TemplateLevel", this->TemplateLevel);
-    std::vector<vtkDataObject*> given{ image };
-    if (isDrawn)
-    {
-      given.push_back(outline);
-    }
-    if (hasTemplate)
-    {
-      given.push_back(other);
-    }
-    vtkLacunaProvenance::Record(output, this, given, parameters.Get());
-    vtkLacunaProvenance::Record(vtkPolyData::GetData(outputs, 1), this, given, parameters.Get());
-    vtkLacunaProvenance::Record(plates, this, given, parameters.Get());
+  std::vector<std::string> warnings = implant.Warnings;
+  if (!isDrawn && holes.GetArea(chosen) < SmallHole)
+  {
+    warnings.push_back("the hole has only " + holes.GetText(chosen) +
+      ": it may be thin bone that this Level does not show. Look at it in the CT");
+  }
+  if (hasTemplate && shape.GetOuterFactor() == 0 && shape.GetThicknessFactor() == 0)
+  {
+    warnings.emplace_back(
+      "the template is not used: the sound bone of this skull has nothing of its shape. Compare "
+      "both in the picture, or give another skull");
+  }
+  if (implant.LargestError > lacuna::TrustedError)
+  {
+    warnings.push_back(GetDoubts(implant, rays, shape.GetPlane()));
+  }
+  if (const std::string thin = GetThinPlaces(implant); !thin.empty())
+  {
+    warnings.push_back(thin);
+  }
+  if (implant.UndercutWidth > WideUndercut)
+  {
+    warnings.push_back("the wall of bone has undercuts, so that the gap beside the implant is up "
+                       "to " +
+      Rounded(implant.UndercutWidth + this->EdgeClearance) + " mm wide, most at " +
+      NameOf(implant.UndercutPoint) + ". Another InsertionDirection may suit this place better");
+  }
+  vtkNew<vtkStringArray> told;
+  told->SetName("Warnings");
+  for (const std::string& warning : warnings)
+  {
+    vtkWarningMacro(<< warning);
+    told->InsertNextValue(warning);
+  }
+  auto* output = ports.GetOutput<vtkPolyData>();
+  lacuna::SetImplant(output, implant);
+  output->GetFieldData()->AddArray(told);
+  auto* plates = ports.GetOutput<vtkPolyData>(2);
+  lacuna::SetPlates(plates, implant, this->ScrewLength);
+  const auto set = [&](const char* name, double value)
+  { vtkLacunaFieldData::Set(output, name, { value }, 1); };
+  const auto setPoint = [&](const char* name, const Vec3& p) {
+    vtkLacunaFieldData::Set(output, name, { p[0], p[1], p[2] }, 3);
   };
-  return vtkLacunaExecution::RunAgreed(this, outputs, isWanted, body);
+  const auto range = std::minmax_element(implant.Thickness.begin(), implant.Thickness.end());
+  set("ChosenDefect", isDrawn ? 0 : static_cast<double>(chosen + 1));
+  set("Volume", implant.Volume);
+  set("Mass", implant.Volume * this->Density / 1000);
+  set("OuterArea", implant.OuterArea);
+  set("DefectArea", implant.HoleArea);
+  set("ThicknessMinimum", *range.first);
+  set("ThicknessMean",
+    std::accumulate(implant.Thickness.begin(), implant.Thickness.end(), 0.0) /
+      static_cast<double>(implant.Thickness.size()));
+  set("ThicknessMaximum", *range.second);
+  set("PredictedErrorRMS", implant.ErrorRMS);
+  set("PredictedErrorMaximum", implant.LargestError);
+  setPoint("PredictedErrorMaximumPoint", implant.LargestErrorPoint);
+  setPoint("InsertionDirection", implant.InsertionDirection);
+  set("LeastTaper", implant.LeastTaper);
+  set("InsertionClearance", implant.InsertionClearance);
+  set("UndercutVolume", implant.UndercutVolume);
+  set("UndercutWidth", implant.UndercutWidth);
+  setPoint("UndercutPoint", implant.UndercutPoint);
+  set("MinimumThickness", implant.MinimumThickness);
+  setPoint("MinimumThicknessPoint", implant.ThinnestPoint);
+  set("NumberOfHoles", implant.Holes);
+  const lacuna::MirrorPlane& plane = shape.GetPlane();
+  setPoint("SymmetryPlaneOrigin", center - plane.Distance(center) * plane.Normal);
+  setPoint("SymmetryPlaneNormal", plane.Normal);
+
+  if (hasTemplate)
+  {
+    set("TemplateFitRMS", example.Fit.RMS);
+    set("TemplateScale", example.Fit.Scale);
+    set("TemplateFactor", shape.GetOuterFactor());
+    set("TemplateThicknessFactor", shape.GetThicknessFactor());
+  }
+}
+
+//------------------------------------------------------------------------------
+std::string vtkLacunaSkullImplant::Parameters(int) const
+{
+  return lacuna::ParameterText()
+    .Add("Level", this->Level)
+    .Add("DefectChoice", this->DefectChoice)
+    .Add("Point", std::vector<double>(this->Point, this->Point + 3))
+    .Add("EdgeClearance", this->EdgeClearance)
+    .Add("Thickness", this->Thickness)
+    .Add("MinimumThickness", this->MinimumThickness)
+    .Add("InsertionDirection",
+      std::vector<double>(this->InsertionDirection, this->InsertionDirection + 3))
+    .Add("OuterOffset", this->OuterOffset)
+    .Add("InnerOffset", this->InnerOffset)
+    .Add("OffsetFade", this->OffsetFade)
+    .Add("Parts", this->Parts)
+    .Add("DrainageSpacing", this->DrainageSpacing)
+    .Add("DrainageDiameter", this->DrainageDiameter)
+    .Add("SutureSpacing", this->SutureSpacing)
+    .Add("SutureDiameter", this->SutureDiameter)
+    .Add("Plates", this->Plates)
+    .Add("ScrewDiameter", this->ScrewDiameter)
+    .Add("ScrewLength", this->ScrewLength)
+    .Add("RimDistance", this->RimDistance)
+    .Add("EngravedText", this->EngravedText)
+    .Add("TextHeight", this->TextHeight)
+    .Add("TriangleSize", this->TriangleSize)
+    .Add("Density", this->Density)
+    .Add("TemplateLevel", this->TemplateLevel)
+    .Get();
 }
 
 //------------------------------------------------------------------------------

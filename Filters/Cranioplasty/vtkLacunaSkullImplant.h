@@ -61,8 +61,8 @@
 #ifndef vtkLacunaSkullImplant_h
 #define vtkLacunaSkullImplant_h
 
+#include "vtkLacunaAlgorithm.h"
 #include "vtkLacunaFiltersCranioplastyModule.h" // for export macro
-#include "vtkLacunaVersionCompat.h"             // for stops
 #include "vtkPolyDataAlgorithm.h"
 
 #include <string>
@@ -72,13 +72,13 @@ namespace lacuna
 struct SkullImplantOptions;
 }
 
-class VTKLACUNAFILTERSCRANIOPLASTY_EXPORT vtkLacunaSkullImplant : public vtkPolyDataAlgorithm
+class VTKLACUNAFILTERSCRANIOPLASTY_EXPORT vtkLacunaSkullImplant
+  : public vtkLacunaAlgorithmOf(vtkPolyDataAlgorithm)
 {
 public:
   static vtkLacunaSkullImplant* New();
   vtkTypeMacro(vtkLacunaSkullImplant, vtkPolyDataAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
-  vtkLacunaKeepTimeAtStops();
 
   enum DefectChoiceType
   {
@@ -217,8 +217,8 @@ protected:
   vtkLacunaSkullImplant();
   ~vtkLacunaSkullImplant() override = default;
   int FillInputPortInformation(int port, vtkInformation* info) override;
-  int RequestUpdateExtent(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
-  int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
+  void Make(const lacuna::Ports& ports, vtkLacunaExecution& execution) override;
+  std::string Parameters(int port) const override;
 
 private:
   vtkLacunaSkullImplant(const vtkLacunaSkullImplant&) = delete;

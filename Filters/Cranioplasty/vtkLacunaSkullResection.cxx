@@ -12,12 +12,8 @@
 #include "vtkDataSet.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
-#include "vtkInformationVector.h"
 #include "vtkLacunaArrays.h"
-#include "vtkLacunaExecution.h"
 #include "vtkLacunaFieldData.h"
-#include "vtkLacunaProvenance.h"
-#include "vtkLacunaRequest.h"
 #include "vtkLacunaVolumeDirection.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
@@ -25,7 +21,6 @@
 #include "vtkPolyData.h"
 #include "vtkPolyDataPointSampler.h"
 #include "vtkSmartPointer.h"
-#include "vtkStreamingDemandDrivenPipeline.h"
 
 #include <algorithm>
 #include <array>
@@ -163,27 +158,13 @@ int vtkLacunaSkullResection::FillOutputPortInformation(int port, vtkInformation*
 }
 
 //------------------------------------------------------------------------------
-int vtkLacunaSkullResection::RequestUpdateExtent(
-  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
-{
-  for (int port = 0; port < 3; ++port)
-  {
-    if (vtkInformation* info = inputs[port]->GetInformationObject(0))
-    {
-      vtkLacunaRequest::Whole(this, info, outputs);
-    }
-  }
-  return 1;
-}
-
-//------------------------------------------------------------------------------
 void vtkLacunaSkullResection::MakeMeshes(const lacuna::VoxelVolume& volume, vtkDataArray* alone,
-  const lacuna::SkullResection& cut, vtkInformationVector* outputs, lacuna::Execution& execution)
+  const lacuna::SkullResection& cut, const lacuna::Ports& ports, lacuna::Execution& execution)
 {
   vtkPolyData* others[3];
   for (int k = 0; k < 3; ++k)
   {
-    others[k] = vtkPolyData::GetData(outputs, k + 1);
+    others[k] = ports.GetOutput<vtkPolyData>(k + 1);
   }
   lacuna::SetCurve(others[0], cut.GetOutline());
   std::array<Vec3, 2> all{ volume.IndexToWorld.Point({ 0, 0, 0 }),
@@ -219,105 +200,88 @@ void vtkLacunaSkullResection::MakeMeshes(const lacuna::VoxelVolume& volume, vtkD
 }
 
 //------------------------------------------------------------------------------
-int vtkLacunaSkullResection::RequestInformation(
-  vtkInformation*, vtkInformationVector**, vtkInformationVector* outputs)
+void vtkLacunaSkullResection::Make(const lacuna::Ports& ports, vtkLacunaExecution& execution)
 {
-  // Each rank makes the extent that VTK turns its piece into.
-  return vtkLacunaExecution::RunInformation(this, outputs,
-    [&] { outputs->GetInformationObject(0)->Set(vtkAlgorithm::CAN_PRODUCE_SUB_EXTENT(), 1); });
+  auto* image = ports.GetInput<vtkImageData>();
+  auto* outline = ports.GetInput<vtkPolyData>(1);
+  auto* tumour = ports.GetInput<vtkDataSet>(2);
+  if (!(this->Level > 0) || !std::isfinite(this->Level))
+  {
+    throw std::runtime_error("Level is " + lacuna::FormatNumber(this->Level) +
+      "; it must be a number above 0, the grey level of bone");
+  }
+  lacuna::ResectionOptions options;
+  options.Level = this->Level;
+  options.Bevel = this->Bevel;
+  options.GuideWidth = this->GuideWidth == 0 ? options.GuideWidth : this->GuideWidth;
+  options.GuideHeight = this->GuideHeight;
+  options.GuideClearance = this->GuideClearance;
+  options.GuideHole = this->GuideHole;
+  CheckResectionOptions(options);
+  const bool isDrawn = outline && outline->GetNumberOfPoints() > 0;
+  const bool hasTumour = tumour && tumour->GetNumberOfPoints() > 0;
+  if (!isDrawn && !hasTumour)
+  {
+    throw std::runtime_error("there is neither an outline nor a tumour: give a closed curve on the "
+                             "skull as Outline, or a mask or surface as Tumour");
+  }
+  vtkSmartPointer<vtkDataArray> keep;
+  const lacuna::VoxelVolume volume = lacuna::GetBoneVolume(image, keep);
+  lacuna::RequireMemory("the bone after the cut and what is cut out",
+    2.0 * static_cast<double>(volume.NumberOfVoxels()) * keep->GetDataTypeSize());
+  execution.SetStage(0, 0.2);
+  const Vec3 middle = FindMeanOfBone(volume, this->Level, execution);
+  execution.SetStage(0.2, 0.3);
+  const lacuna::SkullResection cut(volume,
+    isDrawn ? lacuna::GetCurve(outline)
+            : lacuna::FindOutlineAround(GetTumour(tumour), this->Margin, middle),
+    middle, options, execution);
+  for (const std::string& warning : cut.GetWarnings())
+  {
+    vtkWarningMacro(<< warning);
+  }
+  const auto make = [&]
+  {
+    auto values =
+      vtkSmartPointer<vtkDataArray>::Take(vtkDataArray::CreateDataArray(keep->GetDataType()));
+    vtkLacunaArrays::SetNumberOfTuples(values, image->GetNumberOfPoints());
+    values->SetName(keep->GetName());
+    return values;
+  };
+  const vtkSmartPointer<vtkDataArray> kept = make();
+  const vtkSmartPointer<vtkDataArray> alone = make();
+  execution.SetStage(0.3, 0.7);
+  cut.Cut(kept->GetVoidPointer(0), alone->GetVoidPointer(0), execution);
+
+  auto* bone = ports.GetOutput<vtkImageData>();
+  bone->ShallowCopy(image);
+  bone->GetPointData()->SetScalars(kept);
+  if (ports.IsFirst()) // meshes are there alone
+  {
+    this->MakeMeshes(volume, alone, cut, ports, execution);
+  }
 }
 
 //------------------------------------------------------------------------------
-int vtkLacunaSkullResection::RequestData(
-  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
+std::vector<vtkDataObject*> vtkLacunaSkullResection::GetOrigins(const lacuna::Ports& ports) const
 {
-  const bool isWanted = vtkLacunaRequest::IsWanted(outputs);
-  const auto body = [&](vtkLacunaExecution& execution)
-  {
-    vtkImageData* image = vtkImageData::GetData(inputs[0]);
-    vtkPolyData* outline = vtkPolyData::GetData(inputs[1]);
-    vtkDataSet* tumour = vtkDataSet::GetData(inputs[2]);
-    if (!image || image->GetNumberOfPoints() == 0)
-    {
-      return; // empty in, empty out
-    }
-    if (!(this->Level > 0) || !std::isfinite(this->Level))
-    {
-      throw std::runtime_error("Level is " + lacuna::FormatNumber(this->Level) +
-        "; it must be a number above 0, the grey level of bone");
-    }
-    lacuna::ResectionOptions options;
-    options.Level = this->Level;
-    options.Bevel = this->Bevel;
-    options.GuideWidth = this->GuideWidth == 0 ? options.GuideWidth : this->GuideWidth;
-    options.GuideHeight = this->GuideHeight;
-    options.GuideClearance = this->GuideClearance;
-    options.GuideHole = this->GuideHole;
-    CheckResectionOptions(options);
-    const bool isDrawn = outline && outline->GetNumberOfPoints() > 0;
-    const bool hasTumour = tumour && tumour->GetNumberOfPoints() > 0;
-    if (!isDrawn && !hasTumour)
-    {
-      throw std::runtime_error(
-        "there is neither an outline nor a tumour: give a closed curve on the "
-        "skull as Outline, or a mask or surface as Tumour");
-    }
-    vtkSmartPointer<vtkDataArray> keep;
-    const lacuna::VoxelVolume volume = lacuna::GetBoneVolume(image, keep);
-    lacuna::RequireMemory("the bone after the cut and what is cut out",
-      2.0 * static_cast<double>(volume.NumberOfVoxels()) * keep->GetDataTypeSize());
-    execution.SetStage(0, 0.2);
-    const Vec3 middle = FindMeanOfBone(volume, this->Level, execution);
-    execution.SetStage(0.2, 0.3);
-    const lacuna::SkullResection cut(volume,
-      isDrawn ? lacuna::GetCurve(outline)
-              : lacuna::FindOutlineAround(GetTumour(tumour), this->Margin, middle),
-      middle, options, execution);
-    for (const std::string& warning : cut.GetWarnings())
-    {
-      vtkWarningMacro(<< warning);
-    }
-    const auto make = [&]
-    {
-      auto values =
-        vtkSmartPointer<vtkDataArray>::Take(vtkDataArray::CreateDataArray(keep->GetDataType()));
-      vtkLacunaArrays::SetNumberOfTuples(values, image->GetNumberOfPoints());
-      values->SetName(keep->GetName());
-      return values;
-    };
-    const vtkSmartPointer<vtkDataArray> kept = make();
-    const vtkSmartPointer<vtkDataArray> alone = make();
-    execution.SetStage(0.3, 0.7);
-    cut.Cut(kept->GetVoidPointer(0), alone->GetVoidPointer(0), execution);
+  auto* outline = ports.GetInput<vtkPolyData>(1);
+  const bool isDrawn = outline && outline->GetNumberOfPoints() > 0;
+  return { ports.GetInput<vtkDataObject>(), ports.GetInput<vtkDataObject>(isDrawn ? 1 : 2) };
+}
 
-    vtkImageData* bone = vtkImageData::GetData(outputs);
-    bone->ShallowCopy(image);
-    bone->GetPointData()->SetScalars(kept);
-    std::vector<vtkDataObject*> from{ image };
-    from.push_back(isDrawn ? static_cast<vtkDataObject*>(outline) : tumour);
-    const std::string parameters = lacuna::ParameterText()
-                                     .Add("Level", this->Level)
-                                     .Add("Margin", this->Margin)
-                                     .Add("Bevel", this->Bevel)
-                                     .Add("GuideWidth", this->GuideWidth)
-                                     .Add("GuideHeight", this->GuideHeight)
-                                     .Add("GuideClearance", this->GuideClearance)
-                                     .Add("GuideHole", this->GuideHole)
-                                     .Get();
-    vtkLacunaProvenance::Record(bone, this, from, parameters);
-    if (vtkLacunaRequest::IsFirst(outputs)) // meshes are there alone
-    {
-      this->MakeMeshes(volume, alone, cut, outputs, execution);
-      for (int port = 1; port < 4; ++port)
-      {
-        vtkLacunaProvenance::Record(vtkPolyData::GetData(outputs, port), this, from, parameters);
-      }
-    }
-    int asked[6];
-    outputs->GetInformationObject(0)->Get(vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT(), asked);
-    bone->Crop(asked);
-  };
-  return vtkLacunaExecution::RunAgreed(this, outputs, isWanted, body);
+//------------------------------------------------------------------------------
+std::string vtkLacunaSkullResection::Parameters(int) const
+{
+  return lacuna::ParameterText()
+    .Add("Level", this->Level)
+    .Add("Margin", this->Margin)
+    .Add("Bevel", this->Bevel)
+    .Add("GuideWidth", this->GuideWidth)
+    .Add("GuideHeight", this->GuideHeight)
+    .Add("GuideClearance", this->GuideClearance)
+    .Add("GuideHole", this->GuideHole)
+    .Get();
 }
 
 //------------------------------------------------------------------------------

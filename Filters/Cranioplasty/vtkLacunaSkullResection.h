@@ -31,8 +31,8 @@
 #define vtkLacunaSkullResection_h
 
 #include "vtkImageAlgorithm.h"
+#include "vtkLacunaAlgorithm.h"
 #include "vtkLacunaFiltersCranioplastyModule.h" // for export macro
-#include "vtkLacunaVersionCompat.h"             // for stops
 
 class vtkDataArray;
 
@@ -43,13 +43,13 @@ class SkullResection;
 struct VoxelVolume;
 }
 
-class VTKLACUNAFILTERSCRANIOPLASTY_EXPORT vtkLacunaSkullResection : public vtkImageAlgorithm
+class VTKLACUNAFILTERSCRANIOPLASTY_EXPORT vtkLacunaSkullResection
+  : public vtkLacunaAlgorithmOf(vtkImageAlgorithm)
 {
 public:
   static vtkLacunaSkullResection* New();
   vtkTypeMacro(vtkLacunaSkullResection, vtkImageAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
-  vtkLacunaKeepTimeAtStops();
 
   ///@{
   /** Grey level of bone, in the units of the scalars. Default 300 (Hounsfield units). */
@@ -97,15 +97,15 @@ protected:
   ~vtkLacunaSkullResection() override = default;
   int FillInputPortInformation(int port, vtkInformation* info) override;
   int FillOutputPortInformation(int port, vtkInformation* info) override;
-  int RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
-  int RequestUpdateExtent(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
-  int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
+  void Make(const lacuna::Ports& ports, vtkLacunaExecution& execution) override;
+  std::string Parameters(int port) const override;
+  std::vector<vtkDataObject*> GetOrigins(const lacuna::Ports& ports) const override;
 
 private:
   vtkLacunaSkullResection(const vtkLacunaSkullResection&) = delete;
   void operator=(const vtkLacunaSkullResection&) = delete;
   void MakeMeshes(const lacuna::VoxelVolume& volume, vtkDataArray* alone,
-    const lacuna::SkullResection& cut, vtkInformationVector* outputs, lacuna::Execution& execution);
+    const lacuna::SkullResection& cut, const lacuna::Ports& ports, lacuna::Execution& execution);
 
   double Level = 300;
   double Margin = 10;
