@@ -8,10 +8,6 @@
 #include "vtkIdTypeArray.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
-#include "vtkInformationVector.h"
-#include "vtkLacunaExecution.h"
-#include "vtkLacunaProvenance.h"
-#include "vtkLacunaRequest.h"
 #include "vtkLacunaScalarType.h"
 #include "vtkLacunaSpeckleInput.h"
 #include "vtkLacunaVolumeDirection.h"
@@ -138,70 +134,63 @@ int vtkLacunaContrastToSpeckle::FillInputPortInformation(int, vtkInformation* in
 }
 
 //------------------------------------------------------------------------------
-int vtkLacunaContrastToSpeckle::RequestUpdateExtent(
-  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
+vtkLacunaContrastToSpeckle::vtkLacunaContrastToSpeckle()
 {
-  vtkLacunaRequest::Whole(this, inputs[0]->GetInformationObject(0), outputs);
-  return 1;
+  this->Sharing = lacuna::Share::FirstRank;
+  this->TakesEmpty = true; // an error
+  this->TakesBlocks = true;
 }
 
 //------------------------------------------------------------------------------
-int vtkLacunaContrastToSpeckle::RequestData(
-  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
+void vtkLacunaContrastToSpeckle::MakeNothing(const lacuna::Ports& ports)
 {
-  const bool isWanted = vtkLacunaRequest::IsWanted(outputs);
-  vtkTable* table = vtkTable::GetData(outputs);
-  if (!isWanted)
+  // the same columns, without a row
+  Write(Measures(), this->IsoValue, Row(ports.GetOutput<vtkTable>(), false));
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaContrastToSpeckle::Make(const lacuna::Ports& ports, vtkLacunaExecution& execution)
+{
+  auto* image = ports.GetInput<vtkImageData>();
+  vtkDataArray* array = FindNumbers(image, this->ScalarArray);
+  const lacuna::ScalarType type = vtkLacunaScalarType::Get(array);
+  const auto samples = vtkLacunaSpeckleInput::MakeContiguous(array);
+  if (this->InsideArray.empty() && !HasBounds(this->InsideBounds))
   {
-    Write(Measures(), this->IsoValue, Row(table, false));
+    throw std::runtime_error("no inside region: give InsideArray or InsideBounds");
   }
-  return vtkLacunaExecution::RunAgreed(this, outputs, isWanted,
-    [&](vtkLacunaExecution& execution)
-    {
-      vtkImageData* image = vtkImageData::GetData(inputs[0]);
-      vtkDataArray* array = FindNumbers(image, this->ScalarArray);
-      const lacuna::ScalarType type = vtkLacunaScalarType::Get(array);
-      const auto samples = vtkLacunaSpeckleInput::MakeContiguous(array);
-      if (this->InsideArray.empty() && !HasBounds(this->InsideBounds))
-      {
-        throw std::runtime_error("no inside region: give InsideArray or InsideBounds");
-      }
 
-      lacuna::RequireMemory(
-        "the regions of the image", static_cast<double>(image->GetNumberOfPoints()));
-      std::vector<std::uint8_t> regions(image->GetNumberOfPoints(), lacuna::NoRegion);
-      execution.SetStage(0, 0.2);
-      Mark(image, this->InsideArray, this->InsideBounds, lacuna::InsideRegion, regions, execution);
-      execution.SetStage(0.2, 0.4);
-      Mark(
-        image, this->OutsideArray, this->OutsideBounds, lacuna::OutsideRegion, regions, execution);
-      Measures measures;
-      const lacuna::Extent box = vtkLacunaSpeckleInput::GetExtent(image->GetExtent());
-      lacuna::DispatchScalars(type, samples->GetVoidPointer(0),
-        [&](const auto* values)
-        {
-          const lacuna::ImageView view(values, box);
-          execution.SetStage(0.4, 0.7);
-          measures.Statistics = lacuna::MeasureRegions(view, regions.data(), execution);
-          execution.SetStage(0.7, 1);
-          measures.Regions = lacuna::CountThresholdedRegions(view, this->IsoValue, execution);
-        });
-      for (int r = 0; r < 2; ++r)
-      {
-        if (measures.Statistics[r].Count == 0)
-        {
-          throw std::runtime_error(std::string("no sample is ") + (r == 0 ? "inside" : "outside") +
-            ": check " + RegionNames[r] + "Array and " + RegionNames[r] +
-            "Bounds against the image");
-        }
-      }
-      Write(measures, this->IsoValue, Row(table, true));
-      vtkLacunaProvenance::Record(table, this, { image }, this->Describe());
+  lacuna::RequireMemory(
+    "the regions of the image", static_cast<double>(image->GetNumberOfPoints()));
+  std::vector<std::uint8_t> regions(image->GetNumberOfPoints(), lacuna::NoRegion);
+  execution.SetStage(0, 0.2);
+  Mark(image, this->InsideArray, this->InsideBounds, lacuna::InsideRegion, regions, execution);
+  execution.SetStage(0.2, 0.4);
+  Mark(image, this->OutsideArray, this->OutsideBounds, lacuna::OutsideRegion, regions, execution);
+  Measures measures;
+  const lacuna::Extent box = vtkLacunaSpeckleInput::GetExtent(image->GetExtent());
+  lacuna::DispatchScalars(type, samples->GetVoidPointer(0),
+    [&](const auto* values)
+    {
+      const lacuna::ImageView view(values, box);
+      execution.SetStage(0.4, 0.7);
+      measures.Statistics = lacuna::MeasureRegions(view, regions.data(), execution);
+      execution.SetStage(0.7, 1);
+      measures.Regions = lacuna::CountThresholdedRegions(view, this->IsoValue, execution);
     });
+  for (int r = 0; r < 2; ++r)
+  {
+    if (measures.Statistics[r].Count == 0)
+    {
+      throw std::runtime_error(std::string("no sample is ") + (r == 0 ? "inside" : "outside") +
+        ": check " + RegionNames[r] + "Array and " + RegionNames[r] + "Bounds against the image");
+    }
+  }
+  Write(measures, this->IsoValue, Row(ports.GetOutput<vtkTable>(), true));
 }
 
 //------------------------------------------------------------------------------
-std::string vtkLacunaContrastToSpeckle::Describe() const
+std::string vtkLacunaContrastToSpeckle::Parameters(int) const
 {
   lacuna::ParameterText text;
   const auto region = [&](

@@ -30,19 +30,19 @@
 #ifndef vtkLacunaContrastToSpeckle_h
 #define vtkLacunaContrastToSpeckle_h
 
+#include "vtkLacunaAlgorithm.h"
 #include "vtkLacunaFiltersSpeckleModule.h" // for export macro
-#include "vtkLacunaVersionCompat.h"        // for stops
 #include "vtkTableAlgorithm.h"
 
 #include <string> // for array names
 
-class VTKLACUNAFILTERSSPECKLE_EXPORT vtkLacunaContrastToSpeckle : public vtkTableAlgorithm
+class VTKLACUNAFILTERSSPECKLE_EXPORT vtkLacunaContrastToSpeckle
+  : public vtkLacunaAlgorithmOf(vtkTableAlgorithm)
 {
 public:
   static vtkLacunaContrastToSpeckle* New();
   vtkTypeMacro(vtkLacunaContrastToSpeckle, vtkTableAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
-  vtkLacunaKeepTimeAtStops();
 
   ///@{
   /// The point array of numbers; empty: the active scalars. Default: empty.
@@ -75,20 +75,17 @@ public:
   ///@}
 
 protected:
-  vtkLacunaContrastToSpeckle() = default;
+  vtkLacunaContrastToSpeckle();
   ~vtkLacunaContrastToSpeckle() override = default;
 
   int FillInputPortInformation(int port, vtkInformation* info) override;
-  int RequestUpdateExtent(
-    vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
-  int RequestData(
-    vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
+  void Make(const lacuna::Ports& ports, vtkLacunaExecution& execution) override;
+  std::string Parameters(int port) const override;
+  void MakeNothing(const lacuna::Ports& ports) override;
 
 private:
   vtkLacunaContrastToSpeckle(const vtkLacunaContrastToSpeckle&) = delete;
   void operator=(const vtkLacunaContrastToSpeckle&) = delete;
-
-  std::string Describe() const;
 
   std::string ScalarArray;
   std::string InsideArray;

@@ -7,11 +7,7 @@
 #include "vtkDataObject.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
-#include "vtkInformationVector.h"
 #include "vtkLacunaArrays.h"
-#include "vtkLacunaExecution.h"
-#include "vtkLacunaProvenance.h"
-#include "vtkLacunaRequest.h"
 #include "vtkLacunaScalarType.h"
 #include "vtkLacunaSpeckleInput.h"
 #include "vtkLacunaTrackedSlices.h"
@@ -96,33 +92,6 @@ lacuna::SpeckleParameters MakeParameters(vtkLacunaSpeckleFilter* self, const dou
 }
 
 /// Only what the operation uses.
-std::string Describe(vtkLacunaSpeckleFilter* self)
-{
-  const int* size = self->GetKernelSize();
-  const int operation = self->GetOperation();
-  lacuna::ParameterText text;
-  text.Add("Operation", OperationNames[operation])
-    .Add("KernelSize", std::array<int, 3>{ size[0], size[1], size[2] });
-  if (operation < vtkLacunaSpeckleFilter::MEAN)
-  {
-    text.Add(
-      "KernelShape", self->GetKernelShape() == vtkLacunaSpeckleFilter::BOX ? "Box" : "Ellipsoid");
-  }
-  if (operation == vtkLacunaSpeckleFilter::RANK)
-  {
-    text.Add("Rank", self->GetRank());
-  }
-  if (operation == vtkLacunaSpeckleFilter::ADAPTIVE_MEDIAN)
-  {
-    text.Add("AdaptiveStrength", self->GetAdaptiveStrength());
-  }
-  if (operation > vtkLacunaSpeckleFilter::MEAN)
-  {
-    text.Add("StandardDeviation", self->GetStandardDeviation());
-  }
-  return text.Get();
-}
-
 bool IsTrackedSlices(vtkDataObject* data)
 {
   return data->GetFieldData()->HasArray(vtkLacunaTrackedSlices::ImageToReferenceName) ||
@@ -134,12 +103,6 @@ lacuna::Extent GetWhole(vtkInformation* info)
   int whole[6] = { 0, -1, 0, -1, 0, -1 };
   info->Get(Pipeline::WHOLE_EXTENT(), whole);
   return vtkLacunaSpeckleInput::GetExtent(whole);
-}
-
-/// The extent that an output is asked for.
-lacuna::Extent GetAsked(vtkInformation* info)
-{
-  return vtkLacunaSpeckleInput::GetExtent(vtkLacunaRequest::GetPart(info).data());
 }
 
 /// from: the samples of a component after the other at each point of fromBox.
@@ -171,40 +134,37 @@ void FilterArray(const T* from, const lacuna::Extent& fromBox, vtkDataArray* to,
 }
 
 //------------------------------------------------------------------------------
-int vtkLacunaSpeckleFilter::RequestInformation(
-  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
+vtkLacunaSpeckleFilter::vtkLacunaSpeckleFilter()
 {
-  return vtkLacunaExecution::RunInformation(this, outputs,
-    [&]
-    {
-      // VTK turns the piece that a rank is asked for into its extent.
-      outputs->GetInformationObject(0)->Set(vtkAlgorithm::CAN_PRODUCE_SUB_EXTENT(), 1);
-      vtkInformation* scalars =
-        vtkDataObject::GetActiveFieldInformation(inputs[0]->GetInformationObject(0),
-          vtkDataObject::FIELD_ASSOCIATION_POINTS, vtkDataSetAttributes::SCALARS);
-      const char* active = scalars ? scalars->Get(vtkDataObject::FIELD_NAME()) : nullptr;
-      if (this->Operation == LAPLACIAN_OF_GAUSSIAN &&
-        (this->ScalarArray.empty() || (active && this->ScalarArray == active)))
-      {
-        const bool isDouble =
-          scalars && scalars->Get(vtkDataObject::FIELD_ARRAY_TYPE()) == VTK_DOUBLE;
-        vtkDataObject::SetPointDataActiveScalarInfo(
-          outputs->GetInformationObject(0), isDouble ? VTK_DOUBLE : VTK_FLOAT, -1);
-      }
-    });
+  this->Sharing = lacuna::Share::Parts;
+  this->TakesEmpty = true; // passes field data on
 }
 
 //------------------------------------------------------------------------------
-int vtkLacunaSpeckleFilter::RequestUpdateExtent(
-  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
+void vtkLacunaSpeckleFilter::Announce(const lacuna::Ports& ports)
 {
-  vtkInformation* input = inputs[0]->GetInformationObject(0);
+  vtkInformation* scalars = vtkDataObject::GetActiveFieldInformation(ports.GetInputInformation(),
+    vtkDataObject::FIELD_ASSOCIATION_POINTS, vtkDataSetAttributes::SCALARS);
+  const char* active = scalars ? scalars->Get(vtkDataObject::FIELD_NAME()) : nullptr;
+  if (this->Operation == LAPLACIAN_OF_GAUSSIAN &&
+    (this->ScalarArray.empty() || (active && this->ScalarArray == active)))
+  {
+    const bool isDouble = scalars && scalars->Get(vtkDataObject::FIELD_ARRAY_TYPE()) == VTK_DOUBLE;
+    vtkDataObject::SetPointDataActiveScalarInfo(
+      ports.GetOutputInformation(), isDouble ? VTK_DOUBLE : VTK_FLOAT, -1);
+  }
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaSpeckleFilter::Ask(const lacuna::Ports& ports)
+{
+  vtkInformation* input = ports.GetInputInformation();
   double spacing[3] = { 1, 1, 1 };
   if (input->Has(vtkDataObject::SPACING()))
   {
     input->Get(vtkDataObject::SPACING(), spacing);
   }
-  lacuna::Extent needed = GetAsked(outputs->GetInformationObject(0));
+  lacuna::Extent needed = GetPart(ports.GetOutputInformation());
   try
   {
     if (!lacuna::IsEmpty(needed))
@@ -215,82 +175,100 @@ int vtkLacunaSpeckleFilter::RequestUpdateExtent(
   }
   catch (const std::invalid_argument&)
   {
-    // RequestData reports it.
+    // Make reports it.
   }
-  vtkLacunaRequest::Extent(this, input, needed.data());
-  return 1;
+  this->AskFor(input, needed);
 }
 
 //------------------------------------------------------------------------------
-int vtkLacunaSpeckleFilter::RequestData(
-  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
+void vtkLacunaSpeckleFilter::Make(const lacuna::Ports& ports, vtkLacunaExecution& execution)
 {
-  return vtkLacunaExecution::RunAgreed(this, outputs, true,
-    [&](vtkLacunaExecution& execution)
-    {
-      vtkImageData* input = vtkImageData::GetData(inputs[0]);
-      vtkImageData* output = vtkImageData::GetData(outputs);
-      int asked[6] = { 0, -1, 0, -1, 0, -1 };
-      outputs->GetInformationObject(0)->Get(Pipeline::UPDATE_EXTENT(), asked);
-      const lacuna::Extent inBox = vtkLacunaSpeckleInput::GetExtent(input->GetExtent());
-      const lacuna::Extent box = vtkLacunaSpeckleInput::GetExtent(asked);
-      output->SetOrigin(input->GetOrigin());
-      output->SetSpacing(input->GetSpacing());
-      output->SetDirectionMatrix(input->GetDirectionMatrix()->GetData());
-      output->GetFieldData()->PassData(input->GetFieldData());
-      if (lacuna::IsEmpty(box))
-      {
-        return;
-      }
-      vtkLacunaVolumeDirection::Check(input);
-      const lacuna::SpeckleParameters parameters = MakeParameters(this, input->GetSpacing());
-      vtkDataArray* chosen = vtkLacunaSpeckleInput::FindArray(input, this->ScalarArray);
-      const lacuna::ScalarType scalarType = vtkLacunaScalarType::Get(chosen);
-      const auto from = vtkLacunaSpeckleInput::MakeContiguous(chosen);
-      if (this->KernelSize[2] > 1 && IsTrackedSlices(input))
-      {
-        vtkWarningMacro("KernelSize z is " << this->KernelSize[2]
-                                           << " on tracked slices, which are not parallel: the "
-                                              "filter mixes slices; 1 filters each by itself");
-      }
+  auto* input = ports.GetInput<vtkImageData>();
+  auto* output = ports.GetOutput<vtkImageData>();
+  lacuna::Extent box = ports.GetExtent();
+  const lacuna::Extent inBox = vtkLacunaSpeckleInput::GetExtent(input->GetExtent());
+  output->SetOrigin(input->GetOrigin());
+  output->SetSpacing(input->GetSpacing());
+  output->SetDirectionMatrix(input->GetDirectionMatrix()->GetData());
+  output->GetFieldData()->PassData(input->GetFieldData());
+  if (lacuna::IsEmpty(box))
+  {
+    return;
+  }
+  vtkLacunaVolumeDirection::Check(input);
+  const lacuna::SpeckleParameters parameters = MakeParameters(this, input->GetSpacing());
+  vtkDataArray* chosen = vtkLacunaSpeckleInput::FindArray(input, this->ScalarArray);
+  const lacuna::ScalarType scalarType = vtkLacunaScalarType::Get(chosen);
+  const auto from = vtkLacunaSpeckleInput::MakeContiguous(chosen);
+  if (this->KernelSize[2] > 1 && IsTrackedSlices(input))
+  {
+    vtkWarningMacro("KernelSize z is " << this->KernelSize[2]
+                                       << " on tracked slices, which are not parallel: the "
+                                          "filter mixes slices; 1 filters each by itself");
+  }
 
-      int type = from->GetDataType();
-      if (this->Operation == LAPLACIAN_OF_GAUSSIAN)
-      {
-        type = type == VTK_DOUBLE ? VTK_DOUBLE : VTK_FLOAT;
-      }
-      lacuna::RequireMemory("the filtered " + vtkLacunaSpeckleInput::Name(chosen),
-        static_cast<double>(lacuna::NumberOfSamples(box)) * from->GetNumberOfComponents() *
-          vtkDataArray::GetDataTypeSize(type));
-      auto to = vtk::TakeSmartPointer(vtkDataArray::CreateDataArray(type));
-      to->SetName(from->GetName());
-      to->SetNumberOfComponents(from->GetNumberOfComponents());
-      vtkLacunaArrays::SetNumberOfTuples(to, lacuna::NumberOfSamples(box));
-      lacuna::DispatchScalars(scalarType, from->GetVoidPointer(0),
-        [&](const auto* samples) { FilterArray(samples, inBox, to, box, parameters, execution); });
+  int type = from->GetDataType();
+  if (this->Operation == LAPLACIAN_OF_GAUSSIAN)
+  {
+    type = type == VTK_DOUBLE ? VTK_DOUBLE : VTK_FLOAT;
+  }
+  lacuna::RequireMemory("the filtered " + vtkLacunaSpeckleInput::Name(chosen),
+    static_cast<double>(lacuna::NumberOfSamples(box)) * from->GetNumberOfComponents() *
+      vtkDataArray::GetDataTypeSize(type));
+  auto to = vtk::TakeSmartPointer(vtkDataArray::CreateDataArray(type));
+  to->SetName(from->GetName());
+  to->SetNumberOfComponents(from->GetNumberOfComponents());
+  vtkLacunaArrays::SetNumberOfTuples(to, lacuna::NumberOfSamples(box));
+  lacuna::DispatchScalars(scalarType, from->GetVoidPointer(0),
+    [&](const auto* samples) { FilterArray(samples, inBox, to, box, parameters, execution); });
 
-      output->SetExtent(asked);
-      vtkPointData* inData = input->GetPointData();
-      vtkPointData* outData = output->GetPointData();
-      if (box == inBox)
-      {
-        outData->PassData(inData);
-      }
-      else
-      {
-        CopyOthers(input, chosen, output); // the chosen one would be half of the time
-      }
-      const bool active = inData->GetScalars() == chosen;
-      if (chosen->GetName())
-      {
-        outData->AddArray(to); // in place of the one of that name
-      }
-      if (active)
-      {
-        outData->SetScalars(to);
-      }
-      vtkLacunaProvenance::Record(output, this, { input }, Describe(this));
-    });
+  output->SetExtent(box.data());
+  vtkPointData* inData = input->GetPointData();
+  vtkPointData* outData = output->GetPointData();
+  if (box == inBox)
+  {
+    outData->PassData(inData);
+  }
+  else
+  {
+    CopyOthers(input, chosen, output); // the chosen one would be half of the time
+  }
+  const bool active = inData->GetScalars() == chosen;
+  if (chosen->GetName())
+  {
+    outData->AddArray(to); // in place of the one of that name
+  }
+  if (active)
+  {
+    outData->SetScalars(to);
+  }
+}
+
+//------------------------------------------------------------------------------
+std::string vtkLacunaSpeckleFilter::Parameters(int) const
+{
+  const int* size = this->KernelSize;
+  const int operation = this->Operation;
+  lacuna::ParameterText text;
+  text.Add("Operation", OperationNames[operation])
+    .Add("KernelSize", std::array<int, 3>{ size[0], size[1], size[2] });
+  if (operation < MEAN)
+  {
+    text.Add("KernelShape", this->KernelShape == BOX ? "Box" : "Ellipsoid");
+  }
+  if (operation == RANK)
+  {
+    text.Add("Rank", this->Rank);
+  }
+  if (operation == ADAPTIVE_MEDIAN)
+  {
+    text.Add("AdaptiveStrength", this->AdaptiveStrength);
+  }
+  if (operation > MEAN)
+  {
+    text.Add("StandardDeviation", this->StandardDeviation);
+  }
+  return text.Get();
 }
 
 //------------------------------------------------------------------------------

@@ -26,18 +26,18 @@
 #define vtkLacunaSpeckleFilter_h
 
 #include "vtkImageAlgorithm.h"
+#include "vtkLacunaAlgorithm.h"
 #include "vtkLacunaFiltersSpeckleModule.h" // for export macro
-#include "vtkLacunaVersionCompat.h"        // for stops
 
 #include <string> // for the array's name
 
-class VTKLACUNAFILTERSSPECKLE_EXPORT vtkLacunaSpeckleFilter : public vtkImageAlgorithm
+class VTKLACUNAFILTERSSPECKLE_EXPORT vtkLacunaSpeckleFilter
+  : public vtkLacunaAlgorithmOf(vtkImageAlgorithm)
 {
 public:
   static vtkLacunaSpeckleFilter* New();
   vtkTypeMacro(vtkLacunaSpeckleFilter, vtkImageAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
-  vtkLacunaKeepTimeAtStops();
 
   ///@{
   /// The point array of numbers; empty: the active scalars. Default: empty.
@@ -106,15 +106,13 @@ public:
   ///@}
 
 protected:
-  vtkLacunaSpeckleFilter() = default;
+  vtkLacunaSpeckleFilter();
   ~vtkLacunaSpeckleFilter() override = default;
 
-  int RequestInformation(
-    vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
-  int RequestUpdateExtent(
-    vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
-  int RequestData(
-    vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
+  void Announce(const lacuna::Ports& ports) override;
+  void Ask(const lacuna::Ports& ports) override;
+  void Make(const lacuna::Ports& ports, vtkLacunaExecution& execution) override;
+  std::string Parameters(int port) const override;
 
 private:
   vtkLacunaSpeckleFilter(const vtkLacunaSpeckleFilter&) = delete;
