@@ -13,16 +13,12 @@
 #include "vtkImageData.h"
 #include "vtkImplicitFunction.h"
 #include "vtkInformation.h"
-#include "vtkInformationVector.h"
 #include "vtkLacunaCasterView.h"
 #include "vtkLacunaCutAway.h"
 #include "vtkLacunaDepthMap.h"
-#include "vtkLacunaExecution.h"
 #include "vtkLacunaFieldData.h"
 #include "vtkLacunaFunctionText.h"
 #include "vtkLacunaProposedLevel.h"
-#include "vtkLacunaProvenance.h"
-#include "vtkLacunaRequest.h"
 #include "vtkLacunaVolumeCaster.h"
 #include "vtkMath.h"
 #include "vtkNew.h"
@@ -51,6 +47,7 @@ class vtkLacunaBSplineIsoRayCaster::Internals
 {
 public:
   vtkLacunaVolumeCaster Caster;
+  std::string Made; ///< parameters of the last map
 
   static lacuna::Vec3 Eye(vtkLacunaBSplineIsoRayCaster* self)
   {
@@ -326,156 +323,125 @@ int vtkLacunaBSplineIsoRayCaster::FillInputPortInformation(int port, vtkInformat
 }
 
 //------------------------------------------------------------------------------
-int vtkLacunaBSplineIsoRayCaster::RequestInformation(
-  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
+void vtkLacunaBSplineIsoRayCaster::Announce(const lacuna::Ports& ports)
 {
-  return vtkLacunaExecution::RunInformation(this, outputVector,
-    [&]
-    {
-      vtkInformation* inInfo = inputVector[0]->GetInformationObject(0);
-      vtkInformation* outInfo = outputVector->GetInformationObject(0);
-      int extent[6] = { 0, -1, 0, -1, 0, -1 };
-      inInfo->Get(SDDP::WHOLE_EXTENT(), extent);
-      if (View::IsEmpty(extent))
-      {
-        outInfo->Set(SDDP::WHOLE_EXTENT(), extent, 6);
-        return;
-      }
-      // Only the data know where the volume is: ParaView 5.11 drops the direction from the information, and what its
-      // Resample To Image announces is its input's. When they are up to date, as they usually are, this does nothing.
-      vtkLacunaRequest::UpdateNow(this);
-      vtkImageData* input = vtkImageData::GetData(inInfo);
-      if (!input || View::IsEmpty(input->GetExtent()))
-      {
-        const int none[6] = { 0, -1, 0, -1, 0, -1 };
-        outInfo->Set(SDDP::WHOLE_EXTENT(), none, 6);
-        return;
-      }
-      vtkLacunaDepthMap::SetInformation(outInfo, Internals::MakePlane(this, input));
-    });
+  vtkInformation* info = ports.GetOutputInformation();
+  int extent[6] = { 0, -1, 0, -1, 0, -1 };
+  ports.GetInputInformation()->Get(SDDP::WHOLE_EXTENT(), extent);
+  if (View::IsEmpty(extent))
+  {
+    info->Set(SDDP::WHOLE_EXTENT(), extent, 6);
+    return;
+  }
+  // Only the data know where the volume is: ParaView 5.11 drops the direction from the information, and what its
+  // Resample To Image announces is its input's. When they are up to date, as they usually are, this does nothing.
+  this->UpdateInput(ports);
+  auto* input = ports.GetInput<vtkImageData>();
+  if (!input || View::IsEmpty(input->GetExtent()))
+  {
+    const int none[6] = { 0, -1, 0, -1, 0, -1 };
+    info->Set(SDDP::WHOLE_EXTENT(), none, 6);
+    return;
+  }
+  vtkLacunaDepthMap::SetInformation(info, Internals::MakePlane(this, input));
 }
 
 //------------------------------------------------------------------------------
-int vtkLacunaBSplineIsoRayCaster::RequestUpdateExtent(
-  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
+// Any pixel's ray may go anywhere in the volume. Of the start depths all are asked for: a map of
+// another size must be seen to be one.
+void vtkLacunaBSplineIsoRayCaster::Make(const lacuna::Ports& ports, vtkLacunaExecution& execution)
 {
-  // Any pixel's ray may go anywhere in the volume. Of the start depths all are asked for: a map of
-  // another size must be seen to be one.
-  for (int port = 0; port < 2; ++port)
+  auto* input = ports.GetInput<vtkImageData>();
+  auto* output = ports.GetOutput<vtkImageData>();
+  vtkDataArray* scalars = Internals::FindScalars(this, input);
+  if (this->IsoValues.empty())
   {
-    if (vtkInformation* input =
-          inputVector[port]->GetInformationObject(0)) // else none is connected
+    throw std::runtime_error("no iso-value is given: add one to IsoValues");
+  }
+  for (const double isoValue : this->IsoValues)
+  {
+    if (!std::isfinite(isoValue))
     {
-      vtkLacunaRequest::Whole(this, input, outputVector);
+      throw std::runtime_error("IsoValues is " + lacuna::FormatValue(this->IsoValues) +
+        "; give grey levels that are finite numbers");
     }
   }
-  return 1;
+
+  const lacuna::ImagePlane plane = Internals::MakePlane(this, input);
+  execution.SetStage(0, 0.1);
+  const lacuna::IsoRayCaster& caster =
+    this->Internal->Caster.Prepare(input, scalars, this->Interpolation, this->SolidSide, execution);
+
+  std::array<int, 6> extent = ports.GetExtent();
+  if (extent[0] < 0 || extent[1] >= plane.Size[0] || extent[2] < 0 || extent[3] >= plane.Size[1] ||
+    extent[4] != 0 || extent[5] != 0)
+  {
+    throw std::runtime_error("pixels outside of the depth map were asked for");
+  }
+  output->SetExtent(extent.data());
+  vtkLacunaDepthMap::SetGeometry(output, plane);
+
+  const lacuna::Vec3 eye = Internals::Eye(this);
+  Internals::Casting casting{ caster, scalars->GetName() ? scalars->GetName() : "", plane,
+    { extent[0], extent[1], extent[2], extent[3] }, {}, output };
+  lacuna::RayRequest& request = casting.Request;
+  request.Eye = this->Projection == Perspective ? &eye : nullptr;
+  request.CapCutAway = this->CapCutAway;
+  request.CapBoundary = this->CapBoundary;
+  request.Normals = this->NormalMethod == Analytic ? lacuna::SurfaceNormal::Analytic
+                                                   : lacuna::SurfaceNormal::GreyLevel;
+  // depths and normals of each, mask and thickness of the first
+  const double bytes = (sizeof(double) + 3 * sizeof(float)) * this->IsoValues.size() +
+    sizeof(char) + (this->ComputeThickness ? sizeof(double) : 0) +
+    (ports.GetInput<vtkImageData>(1) ? sizeof(double) : 0);
+  lacuna::RequireMemory(
+    "this part of the depth map, " + std::to_string(output->GetNumberOfPoints()) + " pixels,",
+    static_cast<double>(output->GetNumberOfPoints()) * bytes);
+  std::vector<double> startDepths;
+  auto* start = ports.GetInput<vtkImageData>(1);
+  if (start)
+  {
+    startDepths = View::StartDepths(start, plane, request.Eye, extent.data());
+    request.StartDepth = startDepths.data();
+  }
+  std::unique_ptr<lacuna::CutRegion> cutAway;
+  if (this->CutAway)
+  {
+    const View::Frame frame = View::FrameOf(input);
+    cutAway =
+      vtkLacunaCutAway::MakeRegion(this->CutAway, 0.5 * lacuna::SmallestEdgeOf(frame.IndexToWorld),
+        lacuna::CornersOf(frame.IndexToWorld, frame.Size));
+    request.CutAway = cutAway.get();
+  }
+  const std::size_t count = this->IsoValues.size();
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    execution.SetStage(0.1 + 0.9 * i / count, 0.1 + 0.9 * (i + 1) / count);
+    Internals::Cast(this, casting, i, execution);
+  }
+  output->GetPointData()->SetActiveScalars(vtkLacunaDepthMap::DepthName);
+  if (caster.GetNumberOfNonFiniteVoxels() > 0 && caster.GetMinimum() <= caster.GetMaximum())
+  {
+    vtkWarningMacro("" << caster.GetNumberOfNonFiniteVoxels() << " voxels of array '"
+                       << casting.ArrayName
+                       << "' are not finite numbers and are taken to be empty");
+  }
+
+  vtkLacunaFieldData::Set(output, vtkLacunaDepthMap::IsoValuesName, this->IsoValues, 1);
+  if (request.Eye)
+  {
+    vtkLacunaFieldData::Set(
+      output, vtkLacunaDepthMap::EyePositionName, { eye[0], eye[1], eye[2] }, 3);
+    vtkLacunaFieldData::Set(
+      output, vtkLacunaDepthMap::ViewAngleName, { lacuna::ViewAngleOf(plane, eye) }, 1);
+  }
+  this->Internal->Made = Internals::Describe(this, casting);
 }
 
 //------------------------------------------------------------------------------
-int vtkLacunaBSplineIsoRayCaster::RequestData(
-  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
+std::string vtkLacunaBSplineIsoRayCaster::Parameters(int) const
 {
-  const bool isWanted = vtkLacunaRequest::IsWanted(outputVector); // not an empty part
-  return vtkLacunaExecution::RunAgreed(this, outputVector, isWanted,
-    [&](vtkLacunaExecution& execution)
-    {
-      vtkImageData* input = vtkImageData::GetData(inputVector[0]);
-      vtkImageData* output = vtkImageData::GetData(outputVector);
-      if (!input || View::IsEmpty(input->GetExtent()))
-      {
-        return;
-      }
-      vtkDataArray* scalars = Internals::FindScalars(this, input);
-      if (this->IsoValues.empty())
-      {
-        throw std::runtime_error("no iso-value is given: add one to IsoValues");
-      }
-      for (const double isoValue : this->IsoValues)
-      {
-        if (!std::isfinite(isoValue))
-        {
-          throw std::runtime_error("IsoValues is " + lacuna::FormatValue(this->IsoValues) +
-            "; give grey levels that are finite numbers");
-        }
-      }
-
-      const lacuna::ImagePlane plane = Internals::MakePlane(this, input);
-      execution.SetStage(0, 0.1);
-      const lacuna::IsoRayCaster& caster = this->Internal->Caster.Prepare(
-        input, scalars, this->Interpolation, this->SolidSide, execution);
-
-      int extent[6];
-      outputVector->GetInformationObject(0)->Get(SDDP::UPDATE_EXTENT(), extent);
-      if (extent[0] < 0 || extent[1] >= plane.Size[0] || extent[2] < 0 ||
-        extent[3] >= plane.Size[1] || extent[4] != 0 || extent[5] != 0)
-      {
-        throw std::runtime_error("pixels outside of the depth map were asked for");
-      }
-      output->SetExtent(extent);
-      vtkLacunaDepthMap::SetGeometry(output, plane);
-
-      const lacuna::Vec3 eye = Internals::Eye(this);
-      Internals::Casting casting{ caster, scalars->GetName() ? scalars->GetName() : "", plane,
-        { extent[0], extent[1], extent[2], extent[3] }, {}, output };
-      lacuna::RayRequest& request = casting.Request;
-      request.Eye = this->Projection == Perspective ? &eye : nullptr;
-      request.CapCutAway = this->CapCutAway;
-      request.CapBoundary = this->CapBoundary;
-      request.Normals = this->NormalMethod == Analytic ? lacuna::SurfaceNormal::Analytic
-                                                       : lacuna::SurfaceNormal::GreyLevel;
-      // depths and normals of each, mask and thickness of the first
-      const double bytes = (sizeof(double) + 3 * sizeof(float)) * this->IsoValues.size() +
-        sizeof(char) + (this->ComputeThickness ? sizeof(double) : 0) +
-        (vtkImageData::GetData(inputVector[1]) ? sizeof(double) : 0);
-      lacuna::RequireMemory(
-        "this part of the depth map, " + std::to_string(output->GetNumberOfPoints()) + " pixels,",
-        static_cast<double>(output->GetNumberOfPoints()) * bytes);
-      std::vector<double> startDepths;
-      vtkImageData* start = vtkImageData::GetData(inputVector[1]);
-      if (start)
-      {
-        startDepths = View::StartDepths(start, plane, request.Eye, extent);
-        request.StartDepth = startDepths.data();
-      }
-      std::unique_ptr<lacuna::CutRegion> cutAway;
-      if (this->CutAway)
-      {
-        const View::Frame frame = View::FrameOf(input);
-        cutAway = vtkLacunaCutAway::MakeRegion(this->CutAway,
-          0.5 * lacuna::SmallestEdgeOf(frame.IndexToWorld),
-          lacuna::CornersOf(frame.IndexToWorld, frame.Size));
-        request.CutAway = cutAway.get();
-      }
-      const std::size_t count = this->IsoValues.size();
-      for (std::size_t i = 0; i < count; ++i)
-      {
-        execution.SetStage(0.1 + 0.9 * i / count, 0.1 + 0.9 * (i + 1) / count);
-        Internals::Cast(this, casting, i, execution);
-      }
-      output->GetPointData()->SetActiveScalars(vtkLacunaDepthMap::DepthName);
-      if (caster.GetNumberOfNonFiniteVoxels() > 0 && caster.GetMinimum() <= caster.GetMaximum())
-      {
-        vtkWarningMacro("" << caster.GetNumberOfNonFiniteVoxels() << " voxels of array '"
-                           << casting.ArrayName
-                           << "' are not finite numbers and are taken to be empty");
-      }
-
-      vtkLacunaFieldData::Set(output, vtkLacunaDepthMap::IsoValuesName, this->IsoValues, 1);
-      if (request.Eye)
-      {
-        vtkLacunaFieldData::Set(
-          output, vtkLacunaDepthMap::EyePositionName, { eye[0], eye[1], eye[2] }, 3);
-        vtkLacunaFieldData::Set(
-          output, vtkLacunaDepthMap::ViewAngleName, { lacuna::ViewAngleOf(plane, eye) }, 1);
-      }
-      std::vector<vtkDataObject*> sources{ input };
-      if (start)
-      {
-        sources.push_back(start);
-      }
-      vtkLacunaProvenance::Record(output, this, sources, Internals::Describe(this, casting));
-    });
+  return this->Internal->Made;
 }
 
 //------------------------------------------------------------------------------

@@ -43,8 +43,8 @@
 #define vtkLacunaBSplineIsoRayCaster_h
 
 #include "vtkImageAlgorithm.h"
+#include "vtkLacunaAlgorithm.h"
 #include "vtkLacunaFiltersRayCastingModule.h" // for export macro
-#include "vtkLacunaVersionCompat.h"           // for stops
 
 #include "vtkSmartPointer.h" // for CutAway
 
@@ -55,13 +55,13 @@
 
 class vtkImplicitFunction;
 
-class VTKLACUNAFILTERSRAYCASTING_EXPORT vtkLacunaBSplineIsoRayCaster : public vtkImageAlgorithm
+class VTKLACUNAFILTERSRAYCASTING_EXPORT vtkLacunaBSplineIsoRayCaster
+  : public vtkLacunaAlgorithmOf(vtkImageAlgorithm)
 {
 public:
   static vtkLacunaBSplineIsoRayCaster* New();
   vtkTypeMacro(vtkLacunaBSplineIsoRayCaster, vtkImageAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
-  vtkLacunaKeepTimeAtStops();
 
   enum InterpolationType
   {
@@ -216,9 +216,9 @@ protected:
   ~vtkLacunaBSplineIsoRayCaster() override;
 
   int FillInputPortInformation(int port, vtkInformation* info) override;
-  int RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
-  int RequestUpdateExtent(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
-  int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
+  void Announce(const lacuna::Ports& ports) override;
+  void Make(const lacuna::Ports& ports, vtkLacunaExecution& execution) override;
+  std::string Parameters(int port) const override;
 
   std::string ScalarArray;
   std::vector<double> IsoValues{ 500 };

@@ -10,15 +10,11 @@
 #include "vtkImageData.h"
 #include "vtkImplicitFunction.h"
 #include "vtkInformation.h"
-#include "vtkInformationVector.h"
 #include "vtkLacunaArrays.h"
 #include "vtkLacunaCasterView.h"
 #include "vtkLacunaDepthMap.h"
-#include "vtkLacunaExecution.h"
 #include "vtkLacunaFunctionText.h"
 #include "vtkLacunaMapDepths.h"
-#include "vtkLacunaProvenance.h"
-#include "vtkLacunaRequest.h"
 #include "vtkLacunaShadows.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
@@ -189,7 +185,7 @@ public:
     return normals;
   }
 
-  static std::string Describe(vtkLacunaDepthMapShader* self)
+  static std::string Describe(const vtkLacunaDepthMapShader* self)
   {
     std::vector<double> lights;
     for (const auto& light : self->Lights)
@@ -229,6 +225,7 @@ vtkStandardNewMacro(vtkLacunaDepthMapShader);
 vtkLacunaDepthMapShader::vtkLacunaDepthMapShader()
   : Internal(std::make_unique<Internals>())
 {
+  this->Sharing = lacuna::Share::Parts;
   this->SetNumberOfInputPorts(2);
 }
 
@@ -288,16 +285,9 @@ int vtkLacunaDepthMapShader::FillInputPortInformation(int port, vtkInformation* 
 }
 
 //------------------------------------------------------------------------------
-int vtkLacunaDepthMapShader::RequestInformation(
-  vtkInformation*, vtkInformationVector**, vtkInformationVector* outputVector)
+void vtkLacunaDepthMapShader::Announce(const lacuna::Ports& ports)
 {
-  return vtkLacunaExecution::RunInformation(this, outputVector,
-    [&]
-    {
-      vtkInformation* outInfo = outputVector->GetInformationObject(0);
-      outInfo->Set(vtkAlgorithm::CAN_PRODUCE_SUB_EXTENT(), 1);
-      vtkDataObject::SetPointDataActiveScalarInfo(outInfo, VTK_UNSIGNED_CHAR, 3);
-    });
+  vtkDataObject::SetPointDataActiveScalarInfo(ports.GetOutputInformation(), VTK_UNSIGNED_CHAR, 3);
 }
 
 //------------------------------------------------------------------------------
@@ -309,107 +299,83 @@ bool vtkLacunaDepthMapShader::NeedsWholeMap()
 }
 
 //------------------------------------------------------------------------------
-int vtkLacunaDepthMapShader::RequestUpdateExtent(
-  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
+void vtkLacunaDepthMapShader::Ask(const lacuna::Ports& ports)
 {
-  int whole[6] = { 0, -1, 0, -1, 0, -1 };
-  vtkInformation* inInfo = inputVector[0]->GetInformationObject(0);
-  inInfo->Get(SDDP::WHOLE_EXTENT(), whole);
-  int extent[6];
-  std::copy_n(whole, 6, extent);
-  if (!this->NeedsWholeMap())
+  this->Algorithm::Ask(ports); // the volume as a whole
+  vtkInformation* input = ports.GetInputInformation();
+  std::array<int, 6> whole{ 0, -1, 0, -1, 0, -1 };
+  input->Get(SDDP::WHOLE_EXTENT(), whole.data());
+  std::array<int, 6> extent = this->NeedsWholeMap() ? whole : GetPart(ports.GetOutputInformation());
+  if (extent[0] <= extent[1] && extent[2] <= extent[3])
   {
-    const std::array<int, 6> part =
-      vtkLacunaRequest::GetPart(outputVector->GetInformationObject(0));
-    std::copy(part.begin(), part.end(), extent);
-    if (extent[0] <= extent[1] && extent[2] <= extent[3])
+    // neighbours, for the normals; an extent may begin or end with the integers
+    for (const int first : { 0, 2 })
     {
-      // neighbours, for the normals; an extent may begin or end with the integers
-      for (const int first : { 0, 2 })
-      {
-        extent[first] -= extent[first] > whole[first] ? 1 : 0;
-        extent[first + 1] += extent[first + 1] < whole[first + 1] ? 1 : 0;
-      }
+      extent[first] -= extent[first] > whole[first] ? 1 : 0;
+      extent[first + 1] += extent[first + 1] < whole[first + 1] ? 1 : 0;
     }
   }
-  vtkLacunaRequest::Extent(this, inInfo, extent);
-  if (vtkInformation* volumeInfo = inputVector[1]->GetInformationObject(0))
-  {
-    vtkLacunaRequest::Whole(this, volumeInfo, outputVector);
-  }
-  return 1;
+  this->AskFor(input, extent);
 }
 
 //------------------------------------------------------------------------------
-int vtkLacunaDepthMapShader::RequestData(
-  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
+void vtkLacunaDepthMapShader::Make(const lacuna::Ports& ports, vtkLacunaExecution& execution)
 {
-  const bool isWanted = vtkLacunaRequest::IsWanted(outputVector); // not an empty part
-  return vtkLacunaExecution::RunAgreed(this, outputVector, isWanted,
-    [&](vtkLacunaExecution& execution)
-    {
-      vtkImageData* input = vtkImageData::GetData(inputVector[0]);
-      vtkImageData* volume = vtkImageData::GetData(inputVector[1]);
-      vtkImageData* output = vtkImageData::GetData(outputVector);
-      lacuna::ShadingSettings settings = Internals::MakeSettings(this);
-      if (!input || input->GetNumberOfPoints() == 0)
-      {
-        return;
-      }
-      const vtkLacunaDepthMap contract(input);
-      const vtkLacunaMapDepths depths(input, contract, this->DepthArray);
-      const lacuna::DepthGrid& grid = depths.GetGrid();
-      int extent[6];
-      outputVector->GetInformationObject(0)->Get(SDDP::UPDATE_EXTENT(), extent);
-      if (extent[0] < grid.Extent[0] || extent[1] > grid.Extent[1] || extent[2] < grid.Extent[2] ||
-        extent[3] > grid.Extent[3])
-      {
-        throw std::runtime_error("pixels outside of the depth map were asked for");
-      }
-      output->ShallowCopy(input);
-      output->Crop(extent);
+  auto* input = ports.GetInput<vtkImageData>();
+  auto* volume = ports.GetInput<vtkImageData>(1);
+  auto* output = ports.GetOutput<vtkImageData>();
+  lacuna::ShadingSettings settings = Internals::MakeSettings(this);
+  const vtkLacunaDepthMap contract(input);
+  const vtkLacunaMapDepths depths(input, contract, this->DepthArray);
+  const lacuna::DepthGrid& grid = depths.GetGrid();
+  std::array<int, 6> extent = ports.GetExtent();
+  if (extent[0] < grid.Extent[0] || extent[1] > grid.Extent[1] || extent[2] < grid.Extent[2] ||
+    extent[3] > grid.Extent[3])
+  {
+    throw std::runtime_error("pixels outside of the depth map were asked for");
+  }
+  output->ShallowCopy(input);
+  output->Crop(extent.data());
 
-      execution.SetStage(0, 0.2);
-      lacuna::ShadowCaster shadows;
-      const bool hasVolume = volume && volume->GetNumberOfPoints() > 0;
-      if (hasVolume && this->CastShadows && this->Shading == Phong && !this->Lights.empty())
-      {
-        shadows = this->Internal->PrepareShadows(this, input, volume, execution);
-      }
-      if (hasVolume)
-      {
-        settings.Data = CircumscribedSphere(volume);
-      }
-      else if (this->NeedsWholeMap())
-      {
-        settings.Data = lacuna::CircumscribedSphere(grid, execution);
-      }
+  execution.SetStage(0, 0.2);
+  lacuna::ShadowCaster shadows;
+  const bool hasVolume = volume && volume->GetNumberOfPoints() > 0;
+  if (hasVolume && this->CastShadows && this->Shading == Phong && !this->Lights.empty())
+  {
+    shadows = this->Internal->PrepareShadows(this, input, volume, execution);
+  }
+  if (hasVolume)
+  {
+    settings.Data = CircumscribedSphere(volume);
+  }
+  else if (this->NeedsWholeMap())
+  {
+    settings.Data = lacuna::CircumscribedSphere(grid, execution);
+  }
 
-      execution.SetStage(0.2, 0.4);
-      const auto normals = Internals::MakeNormals(this, grid, output, execution);
-      if (normals)
-      {
-        output->GetPointData()->AddArray(normals);
-        output->GetPointData()->SetActiveNormals(normals->GetName());
-      }
+  execution.SetStage(0.2, 0.4);
+  const auto normals = Internals::MakeNormals(this, grid, output, execution);
+  if (normals)
+  {
+    output->GetPointData()->AddArray(normals);
+    output->GetPointData()->SetActiveNormals(normals->GetName());
+  }
 
-      execution.SetStage(0.4, 1);
-      vtkNew<vtkUnsignedCharArray> colors;
-      colors->SetName(vtkLacunaDepthMap::ColorName);
-      colors->SetNumberOfComponents(3);
-      vtkLacunaArrays::SetNumberOfTuples(colors, output->GetNumberOfPoints());
-      lacuna::ShadeDepths(grid, normals ? normals->GetPointer(0) : nullptr, settings, shadows,
-        { extent[0], extent[1], extent[2], extent[3] }, colors->GetPointer(0), execution);
-      output->GetPointData()->AddArray(colors);
-      output->GetPointData()->SetActiveScalars(vtkLacunaDepthMap::ColorName);
+  execution.SetStage(0.4, 1);
+  vtkNew<vtkUnsignedCharArray> colors;
+  colors->SetName(vtkLacunaDepthMap::ColorName);
+  colors->SetNumberOfComponents(3);
+  vtkLacunaArrays::SetNumberOfTuples(colors, output->GetNumberOfPoints());
+  lacuna::ShadeDepths(grid, normals ? normals->GetPointer(0) : nullptr, settings, shadows,
+    { extent[0], extent[1], extent[2], extent[3] }, colors->GetPointer(0), execution);
+  output->GetPointData()->AddArray(colors);
+  output->GetPointData()->SetActiveScalars(vtkLacunaDepthMap::ColorName);
+}
 
-      std::vector<vtkDataObject*> sources{ input };
-      if (volume)
-      {
-        sources.push_back(volume);
-      }
-      vtkLacunaProvenance::Record(output, this, sources, Internals::Describe(this));
-    });
+//------------------------------------------------------------------------------
+std::string vtkLacunaDepthMapShader::Parameters(int) const
+{
+  return Internals::Describe(this);
 }
 
 //------------------------------------------------------------------------------

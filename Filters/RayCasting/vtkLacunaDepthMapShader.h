@@ -41,8 +41,8 @@
 #define vtkLacunaDepthMapShader_h
 
 #include "vtkImageAlgorithm.h"
+#include "vtkLacunaAlgorithm.h"
 #include "vtkLacunaFiltersRayCastingModule.h" // for export macro
-#include "vtkLacunaVersionCompat.h"           // for stops
 
 #include <array>  // for std::array
 #include <memory> // for std::unique_ptr
@@ -51,13 +51,13 @@
 
 class vtkImplicitFunction;
 
-class VTKLACUNAFILTERSRAYCASTING_EXPORT vtkLacunaDepthMapShader : public vtkImageAlgorithm
+class VTKLACUNAFILTERSRAYCASTING_EXPORT vtkLacunaDepthMapShader
+  : public vtkLacunaAlgorithmOf(vtkImageAlgorithm)
 {
 public:
   static vtkLacunaDepthMapShader* New();
   vtkTypeMacro(vtkLacunaDepthMapShader, vtkImageAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
-  vtkLacunaKeepTimeAtStops();
 
   enum NormalMethodType
   {
@@ -203,9 +203,10 @@ protected:
   ~vtkLacunaDepthMapShader() override;
 
   int FillInputPortInformation(int port, vtkInformation* info) override;
-  int RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
-  int RequestUpdateExtent(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
-  int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
+  void Announce(const lacuna::Ports& ports) override;
+  void Ask(const lacuna::Ports& ports) override;
+  void Make(const lacuna::Ports& ports, vtkLacunaExecution& execution) override;
+  std::string Parameters(int port) const override;
 
   std::string DepthArray = "Depth";
   int NormalMethod = Stored;

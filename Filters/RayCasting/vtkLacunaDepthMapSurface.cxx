@@ -12,13 +12,9 @@
 #include "vtkIdTypeArray.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
-#include "vtkInformationVector.h"
 #include "vtkLacunaArrays.h"
 #include "vtkLacunaDepthMap.h"
-#include "vtkLacunaExecution.h"
 #include "vtkLacunaMapDepths.h"
-#include "vtkLacunaProvenance.h"
-#include "vtkLacunaRequest.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
@@ -107,128 +103,118 @@ int vtkLacunaDepthMapSurface::FillInputPortInformation(int, vtkInformation* info
 }
 
 //------------------------------------------------------------------------------
-int vtkLacunaDepthMapSurface::RequestInformation(
-  vtkInformation*, vtkInformationVector**, vtkInformationVector* outputVector)
+void vtkLacunaDepthMapSurface::Announce(const lacuna::Ports& ports)
 {
-  return vtkLacunaExecution::RunInformation(this, outputVector,
-    [&]
-    { outputVector->GetInformationObject(0)->Set(vtkAlgorithm::CAN_HANDLE_PIECE_REQUEST(), 1); });
+  ports.GetOutputInformation()->Set(vtkAlgorithm::CAN_HANDLE_PIECE_REQUEST(), 1);
 }
 
 //------------------------------------------------------------------------------
-int vtkLacunaDepthMapSurface::RequestUpdateExtent(
-  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
+void vtkLacunaDepthMapSurface::Ask(const lacuna::Ports& ports)
 {
-  vtkInformation* inInfo = inputVector[0]->GetInformationObject(0);
-  int extent[6] = { 0, -1, 0, -1, 0, -1 };
-  inInfo->Get(SDDP::WHOLE_EXTENT(), extent);
-  const Rows rows(extent, outputVector->GetInformationObject(0));
+  vtkInformation* input = ports.GetInputInformation();
+  std::array<int, 6> extent{ 0, -1, 0, -1, 0, -1 };
+  input->Get(SDDP::WHOLE_EXTENT(), extent.data());
+  const Rows rows(extent.data(), ports.GetOutputInformation());
   // one more row on either side for the rule; an extent may begin or end with the integers
   extent[2] = rows.First > extent[2] ? rows.First - 1 : extent[2];
   extent[3] = rows.Last < extent[3] ? rows.Last + 1 : extent[3];
-  vtkLacunaRequest::Extent(this, inInfo, extent);
-  return 1;
+  this->AskFor(input, extent);
 }
 
 //------------------------------------------------------------------------------
-int vtkLacunaDepthMapSurface::RequestData(
-  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
+void vtkLacunaDepthMapSurface::Make(const lacuna::Ports& ports, vtkLacunaExecution& execution)
 {
-  return vtkLacunaExecution::Run(this, outputVector,
-    [&](vtkLacunaExecution& execution)
-    {
-      vtkImageData* input = vtkImageData::GetData(inputVector[0]);
-      vtkPolyData* output = vtkPolyData::GetData(outputVector);
-      if (!input || input->GetNumberOfPoints() == 0)
-      {
-        return;
-      }
-      const vtkLacunaDepthMap map(input);
-      const vtkLacunaMapDepths depths(input, map, this->DepthArray);
-      int whole[6];
-      std::copy_n(input->GetExtent(), 6, whole);
-      inputVector[0]->GetInformationObject(0)->Get(SDDP::WHOLE_EXTENT(), whole);
-      const int* extent = input->GetExtent();
-      const Rows rows(whole, outputVector->GetInformationObject(0));
-      if (rows.First == rows.Last && whole[2] != whole[3])
-      {
-        return; // more pieces than rows
-      }
+  auto* input = ports.GetInput<vtkImageData>();
+  auto* output = ports.GetOutput<vtkPolyData>();
+  const vtkLacunaDepthMap map(input);
+  const vtkLacunaMapDepths depths(input, map, this->DepthArray);
+  int whole[6];
+  std::copy_n(input->GetExtent(), 6, whole);
+  ports.GetInputInformation()->Get(SDDP::WHOLE_EXTENT(), whole);
+  const int* extent = input->GetExtent();
+  const Rows rows(whole, ports.GetOutputInformation());
+  if (rows.First == rows.Last && whole[2] != whole[3])
+  {
+    return; // more pieces than rows
+  }
 
-      const lacuna::DiscontinuityLimits limits{ this->MaximumAngle, this->MaximumAngleChange };
-      execution.SetStage(0, 0.6);
-      const lacuna::DepthMapMesher mesher(depths.GetGrid(),
-        { this->BreakAtDiscontinuities, limits }, rows.First, rows.Last, execution);
+  const lacuna::DiscontinuityLimits limits{ this->MaximumAngle, this->MaximumAngleChange };
+  execution.SetStage(0, 0.6);
+  const lacuna::DepthMapMesher mesher(
+    depths.GetGrid(), { this->BreakAtDiscontinuities, limits }, rows.First, rows.Last, execution);
 
-      execution.SetStage(0.6, 0.8);
-      const vtkIdType numberOfPoints = mesher.GetNumberOfPoints();
-      // coordinates, three numbers of the pixel, what is carried over; corners and offsets
-      const double pixelBytes = 1024.0 *
-        static_cast<double>(input->GetPointData()->GetActualMemorySize()) /
-        static_cast<double>(input->GetNumberOfPoints());
-      lacuna::RequireMemory("the surface of " + std::to_string(numberOfPoints) + " pixels",
-        (48 + pixelBytes) * static_cast<double>(numberOfPoints) +
-          32.0 * static_cast<double>(mesher.GetNumberOfTriangles()));
-      vtkNew<vtkDoubleArray> coordinates;
-      coordinates->SetNumberOfComponents(3);
-      vtkLacunaArrays::SetNumberOfTuples(coordinates, numberOfPoints);
-      std::vector<long long> pixels(numberOfPoints);
-      mesher.FillPoints(coordinates->GetPointer(0), pixels.data(), execution);
-      vtkNew<vtkPoints> points;
-      points->SetData(coordinates);
-      output->SetPoints(points);
+  execution.SetStage(0.6, 0.8);
+  const vtkIdType numberOfPoints = mesher.GetNumberOfPoints();
+  // coordinates, three numbers of the pixel, what is carried over; corners and offsets
+  const double pixelBytes = 1024.0 *
+    static_cast<double>(input->GetPointData()->GetActualMemorySize()) /
+    static_cast<double>(input->GetNumberOfPoints());
+  lacuna::RequireMemory("the surface of " + std::to_string(numberOfPoints) + " pixels",
+    (48 + pixelBytes) * static_cast<double>(numberOfPoints) +
+      32.0 * static_cast<double>(mesher.GetNumberOfTriangles()));
+  vtkNew<vtkDoubleArray> coordinates;
+  coordinates->SetNumberOfComponents(3);
+  vtkLacunaArrays::SetNumberOfTuples(coordinates, numberOfPoints);
+  std::vector<long long> pixels(numberOfPoints);
+  mesher.FillPoints(coordinates->GetPointer(0), pixels.data(), execution);
+  vtkNew<vtkPoints> points;
+  points->SetData(coordinates);
+  output->SetPoints(points);
 
-      execution.SetStage(0.8, 1);
-      vtkNew<vtkTypeInt64Array> corners;
-      vtkLacunaArrays::SetNumberOfTuples(corners, 3 * mesher.GetNumberOfTriangles());
-      mesher.FillTriangles(corners->GetPointer(0), execution);
-      vtkLacunaArrays::SetTriangles(output, corners);
+  execution.SetStage(0.8, 1);
+  vtkNew<vtkTypeInt64Array> corners;
+  vtkLacunaArrays::SetNumberOfTuples(corners, 3 * mesher.GetNumberOfTriangles());
+  mesher.FillTriangles(corners->GetPointer(0), execution);
+  vtkLacunaArrays::SetTriangles(output, corners);
 
-      vtkNew<vtkIdList> ids;
-      ids->SetNumberOfIds(numberOfPoints);
-      vtkNew<vtkIdTypeArray> pixelIds;
-      pixelIds->SetName(vtkLacunaDepthMap::PixelIdName);
-      vtkLacunaArrays::SetNumberOfTuples(pixelIds, numberOfPoints);
-      const std::int64_t columns = std::int64_t(extent[1]) - extent[0] + 1;
-      const std::int64_t wholeColumns = std::int64_t(whole[1]) - whole[0] + 1;
-      for (vtkIdType i = 0; i < numberOfPoints; ++i)
-      {
-        const std::int64_t column = pixels[i] % columns + extent[0] - whole[0];
-        const std::int64_t row = pixels[i] / columns + extent[2] - whole[2];
-        ids->SetId(i, pixels[i]);
-        pixelIds->SetValue(i, column + row * wholeColumns);
-      }
-      vtkPointData* pointData = output->GetPointData();
-      CarryArrays(input->GetPointData(), ids, pointData);
-      pointData->SetPedigreeIds(pixelIds);
-      const std::string normals = vtkLacunaDepthMap::GetNormalsName(this->DepthArray);
-      if (this->ComputeNormalDifference)
-      {
-        const auto difference =
-          DifferenceOfNormals(input, normals, depths.GetGrid(), limits, execution);
-        vtkNew<vtkFloatArray> carried;
-        carried->SetName(difference->GetName());
-        vtkLacunaArrays::SetNumberOfTuples(carried, numberOfPoints);
-        difference->GetTuples(ids, carried);
-        pointData->AddArray(carried);
-      }
-      pointData->SetActiveScalars(pointData->HasArray(vtkLacunaDepthMap::ColorName)
-          ? vtkLacunaDepthMap::ColorName
-          : this->DepthArray.c_str());
-      vtkDataArray* carriedNormals = pointData->GetArray(normals.c_str());
-      if (carriedNormals && carriedNormals->GetNumberOfComponents() == 3)
-      {
-        pointData->SetActiveNormals(normals.c_str());
-      }
+  vtkNew<vtkIdList> ids;
+  ids->SetNumberOfIds(numberOfPoints);
+  vtkNew<vtkIdTypeArray> pixelIds;
+  pixelIds->SetName(vtkLacunaDepthMap::PixelIdName);
+  vtkLacunaArrays::SetNumberOfTuples(pixelIds, numberOfPoints);
+  const std::int64_t columns = std::int64_t(extent[1]) - extent[0] + 1;
+  const std::int64_t wholeColumns = std::int64_t(whole[1]) - whole[0] + 1;
+  for (vtkIdType i = 0; i < numberOfPoints; ++i)
+  {
+    const std::int64_t column = pixels[i] % columns + extent[0] - whole[0];
+    const std::int64_t row = pixels[i] / columns + extent[2] - whole[2];
+    ids->SetId(i, pixels[i]);
+    pixelIds->SetValue(i, column + row * wholeColumns);
+  }
+  vtkPointData* pointData = output->GetPointData();
+  CarryArrays(input->GetPointData(), ids, pointData);
+  pointData->SetPedigreeIds(pixelIds);
+  const std::string normals = vtkLacunaDepthMap::GetNormalsName(this->DepthArray);
+  if (this->ComputeNormalDifference)
+  {
+    const auto difference =
+      DifferenceOfNormals(input, normals, depths.GetGrid(), limits, execution);
+    vtkNew<vtkFloatArray> carried;
+    carried->SetName(difference->GetName());
+    vtkLacunaArrays::SetNumberOfTuples(carried, numberOfPoints);
+    difference->GetTuples(ids, carried);
+    pointData->AddArray(carried);
+  }
+  pointData->SetActiveScalars(pointData->HasArray(vtkLacunaDepthMap::ColorName)
+      ? vtkLacunaDepthMap::ColorName
+      : this->DepthArray.c_str());
+  vtkDataArray* carriedNormals = pointData->GetArray(normals.c_str());
+  if (carriedNormals && carriedNormals->GetNumberOfComponents() == 3)
+  {
+    pointData->SetActiveNormals(normals.c_str());
+  }
+}
 
-      lacuna::ParameterText parameters;
-      parameters.Add("DepthArray", this->DepthArray)
-        .Add("BreakAtDiscontinuities", this->BreakAtDiscontinuities)
-        .Add("MaximumAngle", this->MaximumAngle)
-        .Add("MaximumAngleChange", this->MaximumAngleChange)
-        .Add("ComputeNormalDifference", this->ComputeNormalDifference);
-      vtkLacunaProvenance::Record(output, this, { input }, parameters.Get());
-    });
+//------------------------------------------------------------------------------
+std::string vtkLacunaDepthMapSurface::Parameters(int) const
+{
+  return lacuna::ParameterText()
+    .Add("DepthArray", this->DepthArray)
+    .Add("BreakAtDiscontinuities", this->BreakAtDiscontinuities)
+    .Add("MaximumAngle", this->MaximumAngle)
+    .Add("MaximumAngleChange", this->MaximumAngleChange)
+    .Add("ComputeNormalDifference", this->ComputeNormalDifference)
+    .Get();
 }
 
 //------------------------------------------------------------------------------

@@ -33,12 +33,14 @@
 #ifndef vtkLacunaDepthMapSurface_h
 #define vtkLacunaDepthMapSurface_h
 
+#include "vtkLacunaAlgorithm.h"
 #include "vtkLacunaFiltersRayCastingModule.h" // for export macro
 #include "vtkPolyDataAlgorithm.h"
 
 #include <string> // for std::string
 
-class VTKLACUNAFILTERSRAYCASTING_EXPORT vtkLacunaDepthMapSurface : public vtkPolyDataAlgorithm
+class VTKLACUNAFILTERSRAYCASTING_EXPORT vtkLacunaDepthMapSurface
+  : public vtkLacunaAlgorithmOf(vtkPolyDataAlgorithm)
 {
 public:
   static vtkLacunaDepthMapSurface* New();
@@ -78,13 +80,14 @@ public:
   ///@}
 
 protected:
-  vtkLacunaDepthMapSurface() = default;
+  vtkLacunaDepthMapSurface() { this->Sharing = lacuna::Share::Parts; }
   ~vtkLacunaDepthMapSurface() override = default;
 
   int FillInputPortInformation(int port, vtkInformation* info) override;
-  int RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
-  int RequestUpdateExtent(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
-  int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
+  void Announce(const lacuna::Ports& ports) override;
+  void Ask(const lacuna::Ports& ports) override;
+  void Make(const lacuna::Ports& ports, vtkLacunaExecution& execution) override;
+  std::string Parameters(int port) const override;
 
   std::string DepthArray = "Depth";
   bool BreakAtDiscontinuities = true;
