@@ -12,14 +12,9 @@
 #include "vtkDoubleArray.h"
 #include "vtkFieldData.h"
 #include "vtkInformation.h"
-#include "vtkInformationVector.h"
 #include "vtkIntArray.h"
 #include "vtkLacunaArrays.h"
-#include "vtkLacunaExecution.h"
-#include "vtkLacunaFailure.h"
-#include "vtkLacunaProvenance.h"
 #include "vtkLacunaRBFSurface.h"
-#include "vtkLacunaRequest.h"
 #include "vtkMath.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
@@ -423,6 +418,8 @@ struct vtkLacunaOutlinedStructures::Kept
 //------------------------------------------------------------------------------
 vtkLacunaOutlinedStructures::vtkLacunaOutlinedStructures()
 {
+  this->Sharing = lacuna::Share::FirstRank;
+  this->TakesBlocks = true;
   this->SetNumberOfOutputPorts(2);
 }
 
@@ -432,14 +429,6 @@ vtkLacunaOutlinedStructures::~vtkLacunaOutlinedStructures() = default;
 int vtkLacunaOutlinedStructures::FillOutputPortInformation(int port, vtkInformation* info)
 {
   info->Set(vtkDataObject::DATA_TYPE_NAME(), port == 0 ? "vtkPolyData" : "vtkTable");
-  return 1;
-}
-
-//------------------------------------------------------------------------------
-int vtkLacunaOutlinedStructures::RequestUpdateExtent(
-  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
-{
-  vtkLacunaRequest::Whole(this, inputs[0]->GetInformationObject(0), outputs);
   return 1;
 }
 
@@ -556,127 +545,119 @@ std::shared_ptr<const vtkLacunaOutlinedStructures::Kept> vtkLacunaOutlinedStruct
 }
 
 //------------------------------------------------------------------------------
-int vtkLacunaOutlinedStructures::RequestData(
-  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
+void vtkLacunaOutlinedStructures::Make(const lacuna::Ports& ports, vtkLacunaExecution& execution)
 {
-  const bool isWanted = vtkLacunaRequest::IsFirst(outputs);
-  return vtkLacunaExecution::RunAgreed(this, outputs, isWanted,
-    [&](vtkLacunaExecution& execution)
+  auto* input = ports.GetInput<vtkPolyData>();
+  for (const auto& property :
+    { std::pair<const char*, double>{ "RegistrationError", this->RegistrationError },
+      { "Smoothing", this->Smoothing }, { "OutputSpacing", this->OutputSpacing } })
+  {
+    if (!(property.second >= 0) || !std::isfinite(property.second))
     {
-      vtkPolyData* input = vtkPolyData::GetData(inputs[0]);
-      for (const auto& property :
-        { std::pair<const char*, double>{ "RegistrationError", this->RegistrationError },
-          { "Smoothing", this->Smoothing }, { "OutputSpacing", this->OutputSpacing } })
-      {
-        if (!(property.second >= 0) || !std::isfinite(property.second))
-        {
-          throw std::runtime_error(std::string(property.first) + " is " +
-            lacuna::FormatNumber(property.second) + "; it must be a finite number >= 0, in mm");
-        }
-      }
-      if (!input || input->GetNumberOfPoints() == 0)
-      {
-        return;
-      }
-      vtkNew<vtkStripper> joined; // pieces of lines, as cutters leave them
-      if (!input->GetCellData()->HasArray("Structure"))
-      {
-        joined->SetInputData(input);
-        joined->SetMaximumLength(1000000);
-        joined->JoinContiguousSegmentsOn();
-        joined->Update();
-        input = joined->GetOutput();
-      }
-      const std::map<std::pair<int, std::string>, Structure> structures = GetStructures(input);
+      throw std::runtime_error(std::string(property.first) + " is " +
+        lacuna::FormatNumber(property.second) + "; it must be a finite number >= 0, in mm");
+    }
+  }
+  vtkNew<vtkStripper> joined; // pieces of lines, as cutters leave them
+  if (!input->GetCellData()->HasArray("Structure"))
+  {
+    joined->SetInputData(input);
+    joined->SetMaximumLength(1000000);
+    joined->JoinContiguousSegmentsOn();
+    joined->Update();
+    input = joined->GetOutput();
+  }
+  const std::map<std::pair<int, std::string>, Structure> structures = GetStructures(input);
 
-      std::vector<std::shared_ptr<const Kept>> made;
-      vtkNew<vtkAppendPolyData> append;
-      vtkNew<vtkIntArray> numbers;
-      numbers->SetName("Structure");
-      vtkNew<vtkStringArray> names;
-      names->SetName("Name");
-      vtkNew<vtkIntArray> counts;
-      counts->SetName("Outlines");
-      vtkNew<vtkStringArray> states;
-      states->SetName("Status");
-      constexpr int columns = 7;
-      const std::array<const char*, columns> titles{ "Volume (ml)", "Standard error (ml)",
-        "Area (cm2)", "Largest diameter (mm)", "Centroid X (mm)", "Centroid Y (mm)",
-        "Centroid Z (mm)" };
-      std::array<vtkNew<vtkDoubleArray>, columns> values;
-      std::size_t n = 0;
-      for (const auto& [key, structure] : structures)
+  std::vector<std::shared_ptr<const Kept>> made;
+  vtkNew<vtkAppendPolyData> append;
+  vtkNew<vtkIntArray> numbers;
+  numbers->SetName("Structure");
+  vtkNew<vtkStringArray> names;
+  names->SetName("Name");
+  vtkNew<vtkIntArray> counts;
+  counts->SetName("Outlines");
+  vtkNew<vtkStringArray> states;
+  states->SetName("Status");
+  constexpr int columns = 7;
+  const std::array<const char*, columns> titles{ "Volume (ml)", "Standard error (ml)", "Area (cm2)",
+    "Largest diameter (mm)", "Centroid X (mm)", "Centroid Y (mm)", "Centroid Z (mm)" };
+  std::array<vtkNew<vtkDoubleArray>, columns> values;
+  std::size_t n = 0;
+  for (const auto& [key, structure] : structures)
+  {
+    const int number = key.first;
+    execution.SetStage(static_cast<double>(n) / static_cast<double>(structures.size()),
+      static_cast<double>(n + 1) / static_cast<double>(structures.size()));
+    ++n;
+    std::shared_ptr<const Kept> result = this->Make(structure, execution);
+    made.push_back(result);
+    for (const std::string& warning : result->Warnings)
+    {
+      vtkWarningMacro(<< lacuna::ToPrintable(structure.Name + ": " + warning));
+    }
+    numbers->InsertNextValue(number);
+    names->InsertNextValue(structure.Name);
+    counts->InsertNextValue(static_cast<int>(structure.Outlines.size()));
+    states->InsertNextValue(result->Lack);
+    const Measures& size = result->Size;
+    const double row[columns] = { size.Volume / 1000,
+      std::hypot(size.OutlineError, this->RegistrationError * size.RegistrationError) / 1000,
+      size.Area / 100, size.Diameter, size.Centroid[0], size.Centroid[1], size.Centroid[2] };
+    for (int c = 0; c < columns; ++c)
+    {
+      values[c]->InsertNextValue(row[c]);
+    }
+    if (result->Surface)
+    {
+      vtkNew<vtkPolyData> part;
+      part->ShallowCopy(result->Surface);
+      vtkNew<vtkIntArray> of;
+      of->SetName("Structure");
+      vtkLacunaArrays::SetNumberOfTuples(of, part->GetNumberOfCells());
+      of->FillValue(number);
+      vtkNew<vtkUnsignedCharArray> color;
+      color->SetName("StructureColor");
+      color->SetNumberOfComponents(3);
+      vtkLacunaArrays::SetNumberOfTuples(color, part->GetNumberOfCells());
+      for (int c = 0; c < 3; ++c)
       {
-        const int number = key.first;
-        execution.SetStage(static_cast<double>(n) / static_cast<double>(structures.size()),
-          static_cast<double>(n + 1) / static_cast<double>(structures.size()));
-        ++n;
-        std::shared_ptr<const Kept> result = this->Make(structure, execution);
-        made.push_back(result);
-        for (const std::string& warning : result->Warnings)
-        {
-          vtkWarningMacro(<< lacuna::ToPrintable(structure.Name + ": " + warning));
-        }
-        numbers->InsertNextValue(number);
-        names->InsertNextValue(structure.Name);
-        counts->InsertNextValue(static_cast<int>(structure.Outlines.size()));
-        states->InsertNextValue(result->Lack);
-        const Measures& size = result->Size;
-        const double row[columns] = { size.Volume / 1000,
-          std::hypot(size.OutlineError, this->RegistrationError * size.RegistrationError) / 1000,
-          size.Area / 100, size.Diameter, size.Centroid[0], size.Centroid[1], size.Centroid[2] };
-        for (int c = 0; c < columns; ++c)
-        {
-          values[c]->InsertNextValue(row[c]);
-        }
-        if (result->Surface)
-        {
-          vtkNew<vtkPolyData> part;
-          part->ShallowCopy(result->Surface);
-          vtkNew<vtkIntArray> of;
-          of->SetName("Structure");
-          vtkLacunaArrays::SetNumberOfTuples(of, part->GetNumberOfCells());
-          of->FillValue(number);
-          vtkNew<vtkUnsignedCharArray> color;
-          color->SetName("StructureColor");
-          color->SetNumberOfComponents(3);
-          vtkLacunaArrays::SetNumberOfTuples(color, part->GetNumberOfCells());
-          for (int c = 0; c < 3; ++c)
-          {
-            color->FillComponent(c, structure.Color[c]);
-          }
-          part->GetCellData()->SetScalars(of);
-          part->GetCellData()->AddArray(color);
-          append->AddInputData(part);
-        }
+        color->FillComponent(c, structure.Color[c]);
       }
-      this->Made = std::move(made);
-      vtkPolyData* output = vtkPolyData::GetData(outputs, 0);
-      if (append->GetNumberOfInputConnections(0) > 0)
-      {
-        append->Update();
-        output->ShallowCopy(append->GetOutput());
-        output->GetFieldData()->Initialize();
-      }
-      vtkTable* table = vtkTable::GetData(outputs, 1);
-      table->GetFieldData()->Initialize();
-      table->AddColumn(numbers);
-      table->AddColumn(names);
-      table->AddColumn(counts);
-      for (int c = 0; c < columns; ++c)
-      {
-        values[c]->SetName(titles[c]);
-        table->AddColumn(values[c]);
-      }
-      table->AddColumn(states);
-      const std::string parameters = lacuna::ParameterText()
-                                       .Add("RegistrationError", this->RegistrationError)
-                                       .Add("Smoothing", this->Smoothing)
-                                       .Add("OutputSpacing", this->OutputSpacing)
-                                       .Get();
-      vtkLacunaProvenance::Record(output, this, { input }, parameters);
-      vtkLacunaProvenance::Record(table, this, { input }, parameters);
-    });
+      part->GetCellData()->SetScalars(of);
+      part->GetCellData()->AddArray(color);
+      append->AddInputData(part);
+    }
+  }
+  this->Made = std::move(made);
+  auto* output = ports.GetOutput<vtkPolyData>();
+  if (append->GetNumberOfInputConnections(0) > 0)
+  {
+    append->Update();
+    output->ShallowCopy(append->GetOutput());
+    output->GetFieldData()->Initialize();
+  }
+  auto* table = ports.GetOutput<vtkTable>(1);
+  table->GetFieldData()->Initialize();
+  table->AddColumn(numbers);
+  table->AddColumn(names);
+  table->AddColumn(counts);
+  for (int c = 0; c < columns; ++c)
+  {
+    values[c]->SetName(titles[c]);
+    table->AddColumn(values[c]);
+  }
+  table->AddColumn(states);
+}
+
+//------------------------------------------------------------------------------
+std::string vtkLacunaOutlinedStructures::Parameters(int) const
+{
+  return lacuna::ParameterText()
+    .Add("RegistrationError", this->RegistrationError)
+    .Add("Smoothing", this->Smoothing)
+    .Add("OutputSpacing", this->OutputSpacing)
+    .Get();
 }
 
 //------------------------------------------------------------------------------

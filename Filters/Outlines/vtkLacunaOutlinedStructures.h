@@ -33,6 +33,7 @@
 #ifndef vtkLacunaOutlinedStructures_h
 #define vtkLacunaOutlinedStructures_h
 
+#include "vtkLacunaAlgorithm.h"
 #include "vtkLacunaFiltersOutlinesModule.h" // for export macro
 #include "vtkPolyDataAlgorithm.h"
 
@@ -41,7 +42,8 @@
 
 class vtkLacunaExecution;
 
-class VTKLACUNAFILTERSOUTLINES_EXPORT vtkLacunaOutlinedStructures : public vtkPolyDataAlgorithm
+class VTKLACUNAFILTERSOUTLINES_EXPORT vtkLacunaOutlinedStructures
+  : public vtkLacunaAlgorithmOf(vtkPolyDataAlgorithm)
 {
 public:
   static vtkLacunaOutlinedStructures* New();
@@ -74,10 +76,8 @@ protected:
   ~vtkLacunaOutlinedStructures() override;
 
   int FillOutputPortInformation(int port, vtkInformation* info) override;
-  int RequestUpdateExtent(
-    vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
-  int RequestData(
-    vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
+  void Make(const lacuna::Ports& ports, vtkLacunaExecution& execution) override;
+  std::string Parameters(int port) const override;
 
 private:
   vtkLacunaOutlinedStructures(const vtkLacunaOutlinedStructures&) = delete;

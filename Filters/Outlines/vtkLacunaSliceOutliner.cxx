@@ -12,16 +12,11 @@
 #include "vtkFloatArray.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
-#include "vtkInformationVector.h"
 #include "vtkIntArray.h"
 #include "vtkLacunaArrays.h"
 #include "vtkLacunaCoordinates.h"
-#include "vtkLacunaExecution.h"
 #include "vtkLacunaFieldData.h"
 #include "vtkLacunaOutlineTools.h"
-#include "vtkLacunaProvenance.h"
-#include "vtkLacunaRanks.h"
-#include "vtkLacunaRequest.h"
 #include "vtkLacunaTrackedSlices.h"
 #include "vtkLacunaVolumeDirection.h"
 #include "vtkMatrix4x4.h"
@@ -219,6 +214,7 @@ void CheckNumbers(double structure, double outline, double slice)
 //------------------------------------------------------------------------------
 vtkLacunaSliceOutliner::vtkLacunaSliceOutliner()
 {
+  this->Sharing = lacuna::Share::FirstRank;
   this->SetNumberOfOutputPorts(2);
 }
 
@@ -373,206 +369,178 @@ int vtkLacunaSliceOutliner::FillOutputPortInformation(int port, vtkInformation* 
 }
 
 //------------------------------------------------------------------------------
-int vtkLacunaSliceOutliner::RequestInformation(
-  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
+void vtkLacunaSliceOutliner::Announce(const lacuna::Ports& ports)
 {
-  return vtkLacunaExecution::RunInformation(this, outputs,
-    [&]
-    {
-      int extent[6] = { 0, -1, 0, -1, 0, -1 };
-      if (vtkLacunaRanks().GetRank() == 0)
-      {
-        inputs[0]->GetInformationObject(0)->Get(SDDP::WHOLE_EXTENT(), extent);
-        extent[4] = extent[5] = 0;
-      }
-      outputs->GetInformationObject(1)->Set(SDDP::WHOLE_EXTENT(), extent, 6);
-    });
+  int extent[6] = { 0, -1, 0, -1, 0, -1 };
+  ports.GetInputInformation()->Get(SDDP::WHOLE_EXTENT(), extent);
+  extent[4] = extent[5] = 0;
+  ports.GetOutputInformation(1)->Set(SDDP::WHOLE_EXTENT(), extent, 6);
 }
 
 //------------------------------------------------------------------------------
-int vtkLacunaSliceOutliner::RequestUpdateExtent(
-  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
+void vtkLacunaSliceOutliner::Make(const lacuna::Ports& ports, vtkLacunaExecution& execution)
 {
-  vtkInformation* input = inputs[0]->GetInformationObject(0);
-  if (vtkLacunaRanks().GetRank() > 0) // whatever VTK asks of a grid that is empty there
-  {
-    vtkLacunaRequest::Nothing(this, input);
-    return 1;
-  }
-  vtkLacunaRequest::Whole(this, input, outputs);
-  return 1;
-}
-
-//------------------------------------------------------------------------------
-int vtkLacunaSliceOutliner::RequestData(
-  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
-{
-  const bool isWanted = vtkLacunaRanks().GetRank() == 0 && vtkLacunaRequest::IsWanted(outputs);
-  vtkPolyData* output = vtkPolyData::GetData(outputs, 0);
-  vtkStructuredGrid* picture = vtkStructuredGrid::GetData(outputs, 1);
+  auto* input = ports.GetInput<vtkImageData>();
+  auto* output = ports.GetOutput<vtkPolyData>();
+  auto* picture = ports.GetOutput<vtkStructuredGrid>(1);
   output->GetFieldData()->Initialize(); // VTK passes the slices' own
   picture->GetFieldData()->Initialize();
-  return vtkLacunaExecution::RunAgreed(this, outputs, isWanted,
-    [&](vtkLacunaExecution& execution)
+  vtkDataArray* scalars = input->GetPointData()->GetScalars();
+  if (!scalars || scalars->GetNumberOfComponents() != 1)
+  {
+    throw std::runtime_error("the slices have no active point scalars with one component; "
+                             "choose an array with one value per pixel");
+  }
+  const Slices slices(input);
+  const std::string range = "the slices are " + std::to_string(slices.GetFirst()) + " to " +
+    std::to_string(slices.GetLast());
+
+  if (slices.IsVolume())
+  {
+    this->CheckGrid(input);
+  }
+  if (this->Slice < slices.GetFirst() || this->Slice > slices.GetLast())
+  {
+    throw std::runtime_error("Slice " + std::to_string(this->Slice) + " is not there; " + range);
+  }
+  const int shown = slices.FindNearest(this->Slice);
+  this->ShownSlice = shown;
+  SetPicture(execution, input, scalars, slices, shown, picture);
+  if (!slices.HasPlace(shown))
+  {
+    vtkWarningMacro(<< "slice " << shown
+                    << " has no usable pose, so it has no place in mm and no picture");
+  }
+
+  // the outlines
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  vtkNew<vtkCellArray> lines;
+  vtkNew<vtkFloatArray> pixel;
+  pixel->SetName("Pixel");
+  pixel->SetNumberOfComponents(3);
+  vtkNew<vtkUnsignedCharArray> isHandle;
+  isHandle->SetName("Handle");
+  vtkNew<vtkIntArray> structures;
+  structures->SetName("Structure");
+  vtkNew<vtkStringArray> names;
+  names->SetName("StructureName");
+  vtkNew<vtkIntArray> numbers;
+  numbers->SetName("Outline");
+  vtkNew<vtkIntArray> sliceNumbers;
+  sliceNumbers->SetName("SliceNumber");
+  vtkNew<vtkUnsignedCharArray> colors;
+  colors->SetName("StructureColor");
+  colors->SetNumberOfComponents(3);
+  std::set<std::pair<int, int>> done;
+  std::ostringstream leftOut;
+  for (const Point& p : this->Points)
+  {
+    CheckNumbers(p.Structure, p.Outline, p.Slice);
+  }
+  for (std::size_t first = 0, next = 0; first < this->Points.size(); first = next)
+  {
+    const Point& given = this->Points[first];
+    const struct
     {
-      vtkImageData* input = vtkImageData::GetData(inputs[0]);
-      if (!input || input->GetNumberOfPoints() == 0)
+      int Structure, Outline, Slice;
+    } one{ static_cast<int>(given.Structure), static_cast<int>(given.Outline),
+      static_cast<int>(given.Slice) };
+    const std::string what = "outline " + std::to_string(one.Outline) + " of " +
+      this->GetName(one.Structure) + " in slice " + std::to_string(one.Slice);
+    if (!done.insert({ one.Structure, one.Outline }).second)
+    {
+      throw std::runtime_error(
+        what + " has points in two places of OutlinePoints; put them together");
+    }
+    vtkNew<vtkPoints> handles;
+    handles->SetDataTypeToDouble();
+    for (; next < this->Points.size() && this->Points[next].Structure == one.Structure &&
+         this->Points[next].Outline == one.Outline;
+         ++next)
+    {
+      const Point& p = this->Points[next];
+      if (p.Slice != one.Slice)
       {
-        return;
+        throw std::runtime_error(what + " has a point in slice " + lacuna::FormatNumber(p.Slice) +
+          "; an outline lies in one slice");
       }
-      vtkDataArray* scalars = input->GetPointData()->GetScalars();
-      if (!scalars || scalars->GetNumberOfComponents() != 1)
+      if (!std::isfinite(p.Column) || !std::isfinite(p.Row))
       {
-        throw std::runtime_error("the slices have no active point scalars with one component; "
-                                 "choose an array with one value per pixel");
+        throw std::runtime_error(what + " has a point that is not finite; remove it");
       }
-      const Slices slices(input);
-      const std::string range = "the slices are " + std::to_string(slices.GetFirst()) + " to " +
-        std::to_string(slices.GetLast());
+      handles->InsertNextPoint(p.Column, p.Row, 0);
+    }
+    if (handles->GetNumberOfPoints() < 3)
+    {
+      throw std::runtime_error(what + " has " + std::to_string(handles->GetNumberOfPoints()) +
+        (handles->GetNumberOfPoints() == 1 ? " point" : " points") + "; it needs at least 3");
+    }
+    if (!slices.FindIndex(one.Slice))
+    {
+      throw std::runtime_error(what + " is in a slice that is not there; " + range);
+    }
+    if (!slices.HasPlace(one.Slice))
+    {
+      leftOut << (leftOut.str().empty() ? "" : "; ") << what;
+      continue;
+    }
+    const lacuna::Matrix4 place = slices.GetPixelToSpace(one.Slice);
+    vtkNew<vtkPoints> curve;
+    const int steps = vtkLacunaOutlineTools::MakeCurve(handles, this->Smooth, curve);
+    double crossing[3];
+    if (vtkLacunaOutlineTools::FindCrossing(curve, crossing))
+    {
+      vtkWarningMacro(<< what << " crosses itself at column " << crossing[0] << ", row "
+                      << crossing[1] << ": the surface will be wrong there. Move its points");
+    }
+    const vtkIdType begin = points->GetNumberOfPoints();
+    lines->InsertNextCell(static_cast<int>(curve->GetNumberOfPoints() + 1));
+    for (vtkIdType i = 0; i < curve->GetNumberOfPoints(); ++i)
+    {
+      double x[3];
+      curve->GetPoint(i, x);
+      const float at[3] = { static_cast<float>(x[0]), static_cast<float>(x[1]),
+        static_cast<float>(one.Slice) };
+      pixel->InsertNextTypedTuple(at);
+      isHandle->InsertNextValue(i % steps == 0 ? 1 : 0);
+      lines->InsertCellPoint(points->InsertNextPoint(place.Point({ x[0], x[1], 0 }).data()));
+    }
+    lines->InsertCellPoint(begin);
+    structures->InsertNextValue(one.Structure);
+    names->InsertNextValue(this->GetName(one.Structure));
+    numbers->InsertNextValue(one.Outline);
+    sliceNumbers->InsertNextValue(one.Slice);
+    colors->InsertNextTypedTuple(this->GetColor(one.Structure).data());
+  }
+  if (!leftOut.str().empty())
+  {
+    vtkWarningMacro(<< "left out, since their slices have no usable pose: " << leftOut.str());
+  }
+  output->SetPoints(points);
+  output->SetLines(lines);
+  output->GetPointData()->AddArray(pixel);
+  output->GetPointData()->AddArray(isHandle);
+  output->GetCellData()->SetScalars(structures);
+  for (vtkAbstractArray* array :
+    { static_cast<vtkAbstractArray*>(names.Get()), static_cast<vtkAbstractArray*>(numbers.Get()),
+      static_cast<vtkAbstractArray*>(sliceNumbers.Get()),
+      static_cast<vtkAbstractArray*>(colors.Get()) })
+  {
+    output->GetCellData()->AddArray(array);
+  }
+  this->NumberOfOutlines = static_cast<int>(done.size());
+}
 
-      if (slices.IsVolume())
-      {
-        this->CheckGrid(input);
-      }
-      if (this->Slice < slices.GetFirst() || this->Slice > slices.GetLast())
-      {
-        throw std::runtime_error(
-          "Slice " + std::to_string(this->Slice) + " is not there; " + range);
-      }
-      const int shown = slices.FindNearest(this->Slice);
-      SetPicture(execution, input, scalars, slices, shown, picture);
-      if (!slices.HasPlace(shown))
-      {
-        vtkWarningMacro(<< "slice " << shown
-                        << " has no usable pose, so it has no place in mm and no picture");
-      }
-
-      // the outlines
-      vtkNew<vtkPoints> points;
-      points->SetDataTypeToDouble();
-      vtkNew<vtkCellArray> lines;
-      vtkNew<vtkFloatArray> pixel;
-      pixel->SetName("Pixel");
-      pixel->SetNumberOfComponents(3);
-      vtkNew<vtkUnsignedCharArray> isHandle;
-      isHandle->SetName("Handle");
-      vtkNew<vtkIntArray> structures;
-      structures->SetName("Structure");
-      vtkNew<vtkStringArray> names;
-      names->SetName("StructureName");
-      vtkNew<vtkIntArray> numbers;
-      numbers->SetName("Outline");
-      vtkNew<vtkIntArray> sliceNumbers;
-      sliceNumbers->SetName("SliceNumber");
-      vtkNew<vtkUnsignedCharArray> colors;
-      colors->SetName("StructureColor");
-      colors->SetNumberOfComponents(3);
-      std::set<std::pair<int, int>> done;
-      std::ostringstream leftOut;
-      for (const Point& p : this->Points)
-      {
-        CheckNumbers(p.Structure, p.Outline, p.Slice);
-      }
-      for (std::size_t first = 0, next = 0; first < this->Points.size(); first = next)
-      {
-        const Point& given = this->Points[first];
-        const struct
-        {
-          int Structure, Outline, Slice;
-        } one{ static_cast<int>(given.Structure), static_cast<int>(given.Outline),
-          static_cast<int>(given.Slice) };
-        const std::string what = "outline " + std::to_string(one.Outline) + " of " +
-          this->GetName(one.Structure) + " in slice " + std::to_string(one.Slice);
-        if (!done.insert({ one.Structure, one.Outline }).second)
-        {
-          throw std::runtime_error(
-            what + " has points in two places of OutlinePoints; put them together");
-        }
-        vtkNew<vtkPoints> handles;
-        handles->SetDataTypeToDouble();
-        for (; next < this->Points.size() && this->Points[next].Structure == one.Structure &&
-             this->Points[next].Outline == one.Outline;
-             ++next)
-        {
-          const Point& p = this->Points[next];
-          if (p.Slice != one.Slice)
-          {
-            throw std::runtime_error(what + " has a point in slice " +
-              lacuna::FormatNumber(p.Slice) + "; an outline lies in one slice");
-          }
-          if (!std::isfinite(p.Column) || !std::isfinite(p.Row))
-          {
-            throw std::runtime_error(what + " has a point that is not finite; remove it");
-          }
-          handles->InsertNextPoint(p.Column, p.Row, 0);
-        }
-        if (handles->GetNumberOfPoints() < 3)
-        {
-          throw std::runtime_error(what + " has " + std::to_string(handles->GetNumberOfPoints()) +
-            (handles->GetNumberOfPoints() == 1 ? " point" : " points") + "; it needs at least 3");
-        }
-        if (!slices.FindIndex(one.Slice))
-        {
-          throw std::runtime_error(what + " is in a slice that is not there; " + range);
-        }
-        if (!slices.HasPlace(one.Slice))
-        {
-          leftOut << (leftOut.str().empty() ? "" : "; ") << what;
-          continue;
-        }
-        const lacuna::Matrix4 place = slices.GetPixelToSpace(one.Slice);
-        vtkNew<vtkPoints> curve;
-        const int steps = vtkLacunaOutlineTools::MakeCurve(handles, this->Smooth, curve);
-        double crossing[3];
-        if (vtkLacunaOutlineTools::FindCrossing(curve, crossing))
-        {
-          vtkWarningMacro(<< what << " crosses itself at column " << crossing[0] << ", row "
-                          << crossing[1] << ": the surface will be wrong there. Move its points");
-        }
-        const vtkIdType begin = points->GetNumberOfPoints();
-        lines->InsertNextCell(static_cast<int>(curve->GetNumberOfPoints() + 1));
-        for (vtkIdType i = 0; i < curve->GetNumberOfPoints(); ++i)
-        {
-          double x[3];
-          curve->GetPoint(i, x);
-          const float at[3] = { static_cast<float>(x[0]), static_cast<float>(x[1]),
-            static_cast<float>(one.Slice) };
-          pixel->InsertNextTypedTuple(at);
-          isHandle->InsertNextValue(i % steps == 0 ? 1 : 0);
-          lines->InsertCellPoint(points->InsertNextPoint(place.Point({ x[0], x[1], 0 }).data()));
-        }
-        lines->InsertCellPoint(begin);
-        structures->InsertNextValue(one.Structure);
-        names->InsertNextValue(this->GetName(one.Structure));
-        numbers->InsertNextValue(one.Outline);
-        sliceNumbers->InsertNextValue(one.Slice);
-        colors->InsertNextTypedTuple(this->GetColor(one.Structure).data());
-      }
-      if (!leftOut.str().empty())
-      {
-        vtkWarningMacro(<< "left out, since their slices have no usable pose: " << leftOut.str());
-      }
-      output->SetPoints(points);
-      output->SetLines(lines);
-      output->GetPointData()->AddArray(pixel);
-      output->GetPointData()->AddArray(isHandle);
-      output->GetCellData()->SetScalars(structures);
-      for (vtkAbstractArray* array : { static_cast<vtkAbstractArray*>(names.Get()),
-             static_cast<vtkAbstractArray*>(numbers.Get()),
-             static_cast<vtkAbstractArray*>(sliceNumbers.Get()),
-             static_cast<vtkAbstractArray*>(colors.Get()) })
-      {
-        output->GetCellData()->AddArray(array);
-      }
-      const std::string parameters = lacuna::ParameterText()
-                                       .Add("Outlines", static_cast<int>(done.size()))
-                                       .Add("OutlinePoints", static_cast<int>(this->Points.size()))
-                                       .Add("Smooth", this->Smooth)
-                                       .Get();
-      vtkLacunaProvenance::Record(output, this, { input }, parameters);
-      vtkLacunaProvenance::Record(
-        picture, this, { input }, lacuna::ParameterText().Add("Slice", shown).Get());
-    });
+//------------------------------------------------------------------------------
+std::string vtkLacunaSliceOutliner::Parameters(int port) const
+{
+  lacuna::ParameterText text;
+  return port == 1 ? text.Add("Slice", this->ShownSlice).Get()
+                   : text.Add("Outlines", this->NumberOfOutlines)
+                       .Add("OutlinePoints", static_cast<int>(this->Points.size()))
+                       .Add("Smooth", this->Smooth)
+                       .Get();
 }
 
 //------------------------------------------------------------------------------

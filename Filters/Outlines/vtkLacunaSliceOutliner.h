@@ -33,6 +33,7 @@
 #ifndef vtkLacunaSliceOutliner_h
 #define vtkLacunaSliceOutliner_h
 
+#include "vtkLacunaAlgorithm.h"
 #include "vtkLacunaFiltersOutlinesModule.h" // for export macro
 #include "vtkPolyDataAlgorithm.h"
 
@@ -43,7 +44,8 @@
 class vtkImageData;
 class vtkStructuredGrid;
 
-class VTKLACUNAFILTERSOUTLINES_EXPORT vtkLacunaSliceOutliner : public vtkPolyDataAlgorithm
+class VTKLACUNAFILTERSOUTLINES_EXPORT vtkLacunaSliceOutliner
+  : public vtkLacunaAlgorithmOf(vtkPolyDataAlgorithm)
 {
 public:
   static vtkLacunaSliceOutliner* New();
@@ -104,12 +106,9 @@ protected:
 
   int FillInputPortInformation(int port, vtkInformation* info) override;
   int FillOutputPortInformation(int port, vtkInformation* info) override;
-  int RequestInformation(
-    vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
-  int RequestUpdateExtent(
-    vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
-  int RequestData(
-    vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
+  void Announce(const lacuna::Ports& ports) override;
+  void Make(const lacuna::Ports& ports, vtkLacunaExecution& execution) override;
+  std::string Parameters(int port) const override;
 
 private:
   vtkLacunaSliceOutliner(const vtkLacunaSliceOutliner&) = delete;
@@ -131,5 +130,9 @@ private:
   int SliceRange[2] = { 0, 0 };
   double VolumeGrid[6] = { 0, 0, 0, 0, 0, 0 };
   double InputGrid[6] = { 0, 0, 0, 0, 0, 0 };
+
+  // of what was made last
+  int ShownSlice = 0;
+  int NumberOfOutlines = 0;
 };
 #endif
