@@ -10,6 +10,7 @@
 #define vtkLacunaLiveDevices_h
 
 #include "vtkImageAlgorithm.h"
+#include "vtkLacunaAlgorithm.h"
 #include "vtkLacunaSourcesAcquisitionModule.h" // for export macro
 
 #include <string> // for std::string
@@ -20,7 +21,8 @@ class Clock;
 struct AcquisitionDevices;
 }
 
-class VTKLACUNASOURCESACQUISITION_EXPORT vtkLacunaLiveDevices : public vtkImageAlgorithm
+class VTKLACUNASOURCESACQUISITION_EXPORT vtkLacunaLiveDevices
+  : public vtkLacunaAlgorithmOf(vtkImageAlgorithm)
 {
 public:
   vtkTypeMacro(vtkLacunaLiveDevices, vtkImageAlgorithm);

@@ -5,10 +5,7 @@
 #include "vtkDataObject.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
-#include "vtkInformationVector.h"
-#include "vtkLacunaExecution.h"
 #include "vtkLacunaLiveSweep.h"
-#include "vtkLacunaProvenance.h"
 #include "vtkLacunaTrackedSlices.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
@@ -35,7 +32,7 @@ std::string GetSubject(std::string message)
   return message;
 }
 
-void Announce(vtkInformation* info, const std::array<int, 4>& window, int slices)
+void AnnounceStack(vtkInformation* info, const std::array<int, 4>& window, int slices)
 {
   const int extent[6] = { 0, window[2] - 1, 0, window[3] - 1, 0, slices - 1 };
   const int nothing[6] = { 0, -1, 0, -1, 0, -1 };
@@ -54,6 +51,7 @@ vtkStandardNewMacro(vtkLacunaPolhemusVideoSource);
 vtkLacunaPolhemusVideoSource::vtkLacunaPolhemusVideoSource()
   : Now(std::make_unique<vtkLacunaLiveSweep>())
 {
+  this->Sharing = lacuna::Share::FirstRank;
   this->SetNumberOfInputPorts(0);
   this->SetNumberOfOutputPorts(2);
   this->Now->Newest = vtkLacunaSliceStack::MakeBlank();
@@ -242,8 +240,7 @@ void vtkLacunaPolhemusVideoSource::CollectNews()
 }
 
 //------------------------------------------------------------------------------
-int vtkLacunaPolhemusVideoSource::RequestInformation(
-  vtkInformation*, vtkInformationVector**, vtkInformationVector* outputs)
+void vtkLacunaPolhemusVideoSource::Announce(const lacuna::Ports& ports)
 {
   vtkLacunaLiveSweep& now = *this->Now;
   if (now.Acquisition)
@@ -252,57 +249,59 @@ int vtkLacunaPolhemusVideoSource::RequestInformation(
   }
   const auto set = [&](int port, const vtkLacunaSliceStack* stack)
   {
-    Announce(outputs->GetInformationObject(port), stack ? stack->GetWindow() : std::array<int, 4>{},
+    AnnounceStack(ports.GetOutputInformation(port),
+      stack ? stack->GetWindow() : std::array<int, 4>{},
       stack ? static_cast<int>(stack->GetNumberOfSlices()) : 0);
   };
   set(0, now.Stack.get());
   set(1, now.Newest.get());
-  return 1;
 }
 
 //------------------------------------------------------------------------------
-int vtkLacunaPolhemusVideoSource::RequestData(
-  vtkInformation*, vtkInformationVector**, vtkInformationVector* outputs)
+void vtkLacunaPolhemusVideoSource::Make(const lacuna::Ports& ports, vtkLacunaExecution&)
 {
-  return vtkLacunaExecution::Run(this, outputs,
-    [&](vtkLacunaExecution&)
+  vtkLacunaLiveSweep& now = *this->Now;
+  now.ToldCapturing = now.GetState().Capturing;
+  for (const std::string& message : std::exchange(now.News, {}))
+  {
+    vtkWarningMacro(<< lacuna::ToPrintable(message));
+  }
+  for (int port = 0; port < 2; ++port)
+  {
+    if (ports.GetOutputInformation(port)->Get(SDDP::UPDATE_NUMBER_OF_PIECES()) > 1)
     {
-      vtkLacunaLiveSweep& now = *this->Now;
-      now.ToldCapturing = now.GetState().Capturing;
-      for (const std::string& message : std::exchange(now.News, {}))
-      {
-        vtkWarningMacro(<< lacuna::ToPrintable(message));
-      }
-      for (int port = 0; port < 2; ++port)
-      {
-        vtkInformation* info = outputs->GetInformationObject(port);
-        if (info->Get(SDDP::UPDATE_NUMBER_OF_PIECES()) > 1)
-        {
-          throw std::runtime_error(
-            "Devices are driven by one process only, not by each of several: "
-            "run a server without MPI where they are plugged in");
-        }
-        const vtkLacunaSliceStack* stack = port == 0 ? now.Stack.get() : now.Newest.get();
-        vtkImageData* output = vtkImageData::GetData(outputs, port);
-        if (port == 1 || now.ToldCapturing) // the newest frame may get a pose
-        {
-          vtkLacunaTrackedSlices::MarkAsGrowing(output);
-        }
-        if (stack)
-        {
-          stack->Fill(output);
-          vtkLacunaProvenance::Record(output, this, {},
-            port == 0 ? now.TakenBy : now.DescribeDevices() + " " + this->DescribeRules());
-        }
-        else
-        {
-          // what shows it looks for the array that it is coloured by
-          vtkNew<vtkUnsignedCharArray> none;
-          none->SetName("Intensity");
-          output->GetPointData()->SetScalars(none);
-        }
-      }
-    });
+      throw std::runtime_error("Devices are driven by one process only, not by each of several: "
+                               "run a server without MPI where they are plugged in");
+    }
+    const vtkLacunaSliceStack* stack = port == 0 ? now.Stack.get() : now.Newest.get();
+    auto* output = ports.GetOutput<vtkImageData>(port);
+    if (port == 1 || now.ToldCapturing) // the newest frame may get a pose
+    {
+      vtkLacunaTrackedSlices::MarkAsGrowing(output);
+    }
+    if (stack)
+    {
+      stack->Fill(output);
+    }
+    else
+    {
+      // what shows it looks for the array that it is coloured by
+      vtkNew<vtkUnsignedCharArray> none;
+      none->SetName("Intensity");
+      output->GetPointData()->SetScalars(none);
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
+std::string vtkLacunaPolhemusVideoSource::Parameters(int port) const
+{
+  const vtkLacunaLiveSweep& now = *this->Now;
+  if (!(port == 0 ? now.Stack : now.Newest))
+  {
+    return {};
+  }
+  return port == 0 ? now.TakenBy : now.DescribeDevices() + " " + this->DescribeRules();
 }
 
 //------------------------------------------------------------------------------

@@ -187,8 +187,9 @@ protected:
   vtkLacunaPolhemusVideoSource();
   ~vtkLacunaPolhemusVideoSource() override;
   int FillOutputPortInformation(int port, vtkInformation* info) override;
-  int RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
-  int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
+  void Announce(const lacuna::Ports& ports) override;
+  void Make(const lacuna::Ports& ports, vtkLacunaExecution& execution) override;
+  std::string Parameters(int port) const override;
 
 private:
   vtkLacunaPolhemusVideoSource(const vtkLacunaPolhemusVideoSource&) = delete;

@@ -6,11 +6,8 @@
 #include "lacunaParameterText.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
-#include "vtkInformationVector.h"
 #include "vtkLacunaArrays.h"
-#include "vtkLacunaExecution.h"
 #include "vtkLacunaFieldData.h"
-#include "vtkLacunaProvenance.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
@@ -62,67 +59,56 @@ double vtkLacunaIncompleteShape::EvaluateDistance(double x, double y, double z)
 }
 
 //------------------------------------------------------------------------------
-int vtkLacunaIncompleteShape::RequestInformation(
-  vtkInformation*, vtkInformationVector**, vtkInformationVector* outputVector)
+void vtkLacunaIncompleteShape::Announce(const lacuna::Ports& ports)
 {
-  return vtkLacunaExecution::RunInformation(this, outputVector,
-    [&]
-    {
-      const std::array<int, 3> n = this->MakeShape().GetDimensions();
-      const int extent[6] = { 0, n[0] - 1, 0, n[1] - 1, 0, n[2] - 1 };
-      const double origin[3] = { -0.5 * (n[0] - 1), -0.5 * (n[1] - 1), -0.5 * (n[2] - 1) };
-      const double spacing[3] = { 1, 1, 1 };
-      vtkInformation* info = outputVector->GetInformationObject(0);
-      info->Set(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), extent, 6);
-      info->Set(vtkDataObject::ORIGIN(), origin, 3);
-      info->Set(vtkDataObject::SPACING(), spacing, 3);
-      vtkDataObject::SetPointDataActiveScalarInfo(info, VTK_UNSIGNED_CHAR, 1);
-      info->Set(vtkAlgorithm::CAN_PRODUCE_SUB_EXTENT(), 1);
-    });
+  const std::array<int, 3> n = this->MakeShape().GetDimensions();
+  const int extent[6] = { 0, n[0] - 1, 0, n[1] - 1, 0, n[2] - 1 };
+  const double origin[3] = { -0.5 * (n[0] - 1), -0.5 * (n[1] - 1), -0.5 * (n[2] - 1) };
+  const double spacing[3] = { 1, 1, 1 };
+  vtkInformation* info = ports.GetOutputInformation();
+  info->Set(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), extent, 6);
+  info->Set(vtkDataObject::ORIGIN(), origin, 3);
+  info->Set(vtkDataObject::SPACING(), spacing, 3);
+  vtkDataObject::SetPointDataActiveScalarInfo(info, VTK_UNSIGNED_CHAR, 1);
 }
 
 //------------------------------------------------------------------------------
-int vtkLacunaIncompleteShape::RequestData(
-  vtkInformation*, vtkInformationVector**, vtkInformationVector* outputVector)
+void vtkLacunaIncompleteShape::Make(const lacuna::Ports& ports, vtkLacunaExecution& execution)
 {
-  return vtkLacunaExecution::Run(this, outputVector,
-    [&](vtkLacunaExecution& execution)
-    {
-      const lacuna::IncompleteShape shape = this->MakeShape();
-      const std::array<int, 3> n = shape.GetDimensions();
-      std::ostringstream what;
-      what << "an image of " << n[0] << " x " << n[1] << " x " << n[2] << " voxels";
-      lacuna::RequireMemory(what.str(), 2.0 * n[0] * n[1] * n[2]);
-      const std::vector<unsigned char> voxels = shape.Sample(execution);
+  const lacuna::IncompleteShape shape = this->MakeShape();
+  const std::array<int, 3> n = shape.GetDimensions();
+  std::ostringstream what;
+  what << "an image of " << n[0] << " x " << n[1] << " x " << n[2] << " voxels";
+  lacuna::RequireMemory(what.str(), 2.0 * n[0] * n[1] * n[2]);
+  const std::vector<unsigned char> voxels = shape.Sample(execution);
 
-      vtkImageData* output = vtkImageData::GetData(outputVector);
-      output->SetOrigin(-0.5 * (n[0] - 1), -0.5 * (n[1] - 1), -0.5 * (n[2] - 1));
-      output->SetSpacing(1, 1, 1);
-      output->SetDimensions(n.data());
-      vtkNew<vtkUnsignedCharArray> data;
-      data->SetName("Data");
-      vtkLacunaArrays::SetNumberOfTuples(data, static_cast<vtkIdType>(voxels.size()));
-      std::copy(voxels.begin(), voxels.end(), data->GetPointer(0));
-      output->GetPointData()->SetScalars(data);
-      // what is missing is chosen from the whole, so the whole is made and cut to what was asked
-      int extent[6];
-      outputVector->GetInformationObject(0)->Get(
-        vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT(), extent);
-      output->Crop(extent);
-      const double unit = shape.IsFlat() ? 1 : 0.001;
-      vtkLacunaFieldData::Set(output, "CompleteVolume", { unit * shape.GetContent() }, 1);
-      lacuna::ParameterText parameters;
-      parameters.Add("Shape", this->Shape)
-        .Add("Dimensions", this->Dimensions)
-        .Add("PresentFraction", this->PresentFraction)
-        .Add("Patches", this->Patches)
-        .Add("PatchRadii", this->PatchRadii)
-        .Add("GapAngle", this->GapAngle)
-        .Add("TissueFraction", this->TissueFraction)
-        .Add("OutlierFraction", this->OutlierFraction)
-        .Add("Seed", this->Seed);
-      vtkLacunaProvenance::Record(output, this, {}, parameters.Get());
-    });
+  auto* output = ports.GetOutput<vtkImageData>();
+  output->SetOrigin(-0.5 * (n[0] - 1), -0.5 * (n[1] - 1), -0.5 * (n[2] - 1));
+  output->SetSpacing(1, 1, 1);
+  output->SetDimensions(n.data());
+  vtkNew<vtkUnsignedCharArray> data;
+  data->SetName("Data");
+  vtkLacunaArrays::SetNumberOfTuples(data, static_cast<vtkIdType>(voxels.size()));
+  std::copy(voxels.begin(), voxels.end(), data->GetPointer(0));
+  output->GetPointData()->SetScalars(data); // the whole, since what is missing is chosen from it
+  const double unit = shape.IsFlat() ? 1 : 0.001;
+  vtkLacunaFieldData::Set(output, "CompleteVolume", { unit * shape.GetContent() }, 1);
+}
+
+//------------------------------------------------------------------------------
+std::string vtkLacunaIncompleteShape::Parameters(int) const
+{
+  return lacuna::ParameterText()
+    .Add("Shape", this->Shape)
+    .Add("Dimensions", this->Dimensions)
+    .Add("PresentFraction", this->PresentFraction)
+    .Add("Patches", this->Patches)
+    .Add("PatchRadii", this->PatchRadii)
+    .Add("GapAngle", this->GapAngle)
+    .Add("TissueFraction", this->TissueFraction)
+    .Add("OutlierFraction", this->OutlierFraction)
+    .Add("Seed", this->Seed)
+    .Get();
 }
 
 //------------------------------------------------------------------------------

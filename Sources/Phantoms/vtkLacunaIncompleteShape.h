@@ -13,6 +13,7 @@
 #define vtkLacunaIncompleteShape_h
 
 #include "vtkImageAlgorithm.h"
+#include "vtkLacunaAlgorithm.h"
 #include "vtkLacunaSourcesPhantomsModule.h" // for export macro
 
 namespace lacuna
@@ -20,7 +21,8 @@ namespace lacuna
 class IncompleteShape;
 }
 
-class VTKLACUNASOURCESPHANTOMS_EXPORT vtkLacunaIncompleteShape : public vtkImageAlgorithm
+class VTKLACUNASOURCESPHANTOMS_EXPORT vtkLacunaIncompleteShape
+  : public vtkLacunaAlgorithmOf(vtkImageAlgorithm)
 {
 public:
   static vtkLacunaIncompleteShape* New();
@@ -100,8 +102,9 @@ public:
 protected:
   vtkLacunaIncompleteShape();
   ~vtkLacunaIncompleteShape() override;
-  int RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
-  int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
+  void Announce(const lacuna::Ports& ports) override;
+  void Make(const lacuna::Ports& ports, vtkLacunaExecution& execution) override;
+  std::string Parameters(int port) const override;
 
   int Shape = CIRCLE;
   int Dimensions[3] = { 200, 200, 200 };

@@ -12,13 +12,8 @@
 #include "vtkFloatArray.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
-#include "vtkInformationVector.h"
 #include "vtkLacunaArrays.h"
-#include "vtkLacunaCoordinates.h"
-#include "vtkLacunaExecution.h"
 #include "vtkLacunaFieldData.h"
-#include "vtkLacunaProvenance.h"
-#include "vtkLacunaRequest.h"
 #include "vtkLacunaScalarType.h"
 #include "vtkLacunaTrackedSlices.h"
 #include "vtkLacunaVersionCompat.h"
@@ -73,6 +68,8 @@ std::unique_ptr<lacuna::PhantomScene> MakeScene(vtkImageData* volume)
 //------------------------------------------------------------------------------
 vtkLacunaPhantomSweep::vtkLacunaPhantomSweep()
 {
+  this->TakesEmpty = true;  // an error
+  this->KeepsPlace = false; // columns, rows and slices, whatever the volume's are
   this->SetNumberOfInputPorts(1);
 }
 
@@ -170,124 +167,90 @@ const lacuna::PhantomScene* vtkLacunaPhantomSweep::FindScene()
   }
   catch (const std::invalid_argument&)
   {
-    return nullptr; // RequestInformation says what is wrong
+    return nullptr; // Announce says what is wrong
   }
 }
 
 //------------------------------------------------------------------------------
-int vtkLacunaPhantomSweep::RequestInformation(
-  vtkInformation*, vtkInformationVector**, vtkInformationVector* outputVector)
+void vtkLacunaPhantomSweep::Announce(const lacuna::Ports& ports)
 {
-  return vtkLacunaExecution::RunInformation(this, outputVector,
-    [&]
-    {
-      this->MakeMotion(nullptr);
-      this->GetScene();
-      vtkInformation* info = outputVector->GetInformationObject(0);
-      const int extent[6] = { 0, this->ImageSize[0] - 1, 0, this->ImageSize[1] - 1, 0,
-        this->NumberOfSlices - 1 };
-      info->Set(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), extent, 6);
-      info->Set(vtkDataObject::ORIGIN(), 0.0, 0.0, 0.0);
-      info->Set(vtkDataObject::SPACING(), 1.0, 1.0, 1.0);
-      vtkLacunaVolumeDirection::AnnounceAlongAxes(info);
-      vtkDataObject::SetPointDataActiveScalarInfo(
-        info, this->OutputScalarType == FLOAT ? VTK_FLOAT : VTK_UNSIGNED_CHAR, 1);
-      info->Set(vtkAlgorithm::CAN_PRODUCE_SUB_EXTENT(), 1);
-    });
+  this->MakeMotion(nullptr);
+  this->GetScene();
+  vtkInformation* info = ports.GetOutputInformation();
+  const int extent[6] = { 0, this->ImageSize[0] - 1, 0, this->ImageSize[1] - 1, 0,
+    this->NumberOfSlices - 1 };
+  info->Set(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), extent, 6);
+  info->Set(vtkDataObject::ORIGIN(), 0.0, 0.0, 0.0);
+  info->Set(vtkDataObject::SPACING(), 1.0, 1.0, 1.0);
+  vtkLacunaVolumeDirection::AnnounceAlongAxes(info);
+  vtkDataObject::SetPointDataActiveScalarInfo(
+    info, this->OutputScalarType == FLOAT ? VTK_FLOAT : VTK_UNSIGNED_CHAR, 1);
 }
 
 //------------------------------------------------------------------------------
-int vtkLacunaPhantomSweep::RequestUpdateExtent(
-  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
+void vtkLacunaPhantomSweep::Make(const lacuna::Ports& ports, vtkLacunaExecution& execution)
 {
-  if (vtkInformation* info = inputVector[0]->GetInformationObject(0))
+  auto* volume = ports.GetInput<vtkImageData>(); // a slice may cut through any part of it
+  if (volume && volume->GetNumberOfPoints() == 0)
   {
-    // A slice may cut through any part of the volume.
-    vtkLacunaRequest::Whole(this, info, outputVector);
+    throw std::runtime_error("the input volume is empty");
   }
-  return 1;
-}
+  const lacuna::ProbeMotion motion = this->MakeMotion(volume);
+  const std::unique_ptr<lacuna::PhantomScene> volumeScene = volume ? MakeScene(volume) : nullptr;
+  const lacuna::PhantomScene& scene = volumeScene ? *volumeScene : this->GetScene();
 
-//------------------------------------------------------------------------------
-int vtkLacunaPhantomSweep::RequestData(
-  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
-{
-  return vtkLacunaExecution::Run(this, outputVector,
-    [&](vtkLacunaExecution& execution)
-    {
-      if (!vtkLacunaRequest::IsWanted(outputVector))
-      {
-        return;
-      }
-      vtkImageData* volume = vtkImageData::GetData(inputVector[0]);
-      if (volume && volume->GetNumberOfPoints() == 0)
-      {
-        throw std::runtime_error("the input volume is empty");
-      }
-      const lacuna::ProbeMotion motion = this->MakeMotion(volume);
-      const std::unique_ptr<lacuna::PhantomScene> volumeScene =
-        volume ? MakeScene(volume) : nullptr;
-      const lacuna::PhantomScene& scene = volumeScene ? *volumeScene : this->GetScene();
+  lacuna::Extent extent = ports.GetExtent();
+  auto* output = ports.GetOutput<vtkImageData>();
+  const double bytes =
+    lacuna::CountPoints(extent) * (this->OutputScalarType == FLOAT ? sizeof(float) : 1);
+  constexpr double BytesPerPose = 4.0 * 16 * sizeof(double);
+  std::ostringstream what;
+  what << "a sweep of " << this->NumberOfSlices << " slices of " << this->ImageSize[0] << " x "
+       << this->ImageSize[1] << " pixels";
+  lacuna::RequireMemory(what.str(), bytes + BytesPerPose * this->NumberOfSlices);
 
-      vtkInformation* info = outputVector->GetInformationObject(0);
-      lacuna::Extent extent;
-      info->Get(vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT(), extent.data());
-      vtkImageData* output = vtkImageData::GetData(outputVector);
-      const double bytes =
-        lacuna::CountPoints(extent) * (this->OutputScalarType == FLOAT ? sizeof(float) : 1);
-      constexpr double BytesPerPose = 4.0 * 16 * sizeof(double);
-      std::ostringstream what;
-      what << "a sweep of " << this->NumberOfSlices << " slices of " << this->ImageSize[0] << " x "
-           << this->ImageSize[1] << " pixels";
-      lacuna::RequireMemory(what.str(), bytes + BytesPerPose * this->NumberOfSlices);
+  output->SetOrigin(0, 0, 0);
+  output->SetSpacing(1, 1, 1);
+  output->SetExtent(extent.data());
+  vtkDataArray* scalars = vtkLacunaArrays::AddScalars(
+    output, this->OutputScalarType == FLOAT ? VTK_FLOAT : VTK_UNSIGNED_CHAR, "Intensity");
 
-      output->SetOrigin(0, 0, 0);
-      output->SetSpacing(1, 1, 1);
-      output->SetExtent(extent.data());
-      vtkDataArray* scalars = vtkLacunaArrays::AddScalars(
-        output, this->OutputScalarType == FLOAT ? VTK_FLOAT : VTK_UNSIGNED_CHAR, "Intensity");
+  const lacuna::Matrix4 imageToProbe =
+    lacuna::MakeImageToProbe(this->ImageSize[0], this->PixelSpacing);
+  lacuna::SliceImaging imaging;
+  imaging.Columns = this->ImageSize[0];
+  imaging.Rows = this->ImageSize[1];
+  imaging.SpeckleLevel = this->SpeckleLevel;
+  imaging.Seed = static_cast<std::uint64_t>(this->Seed);
+  imaging.ImageToReference = [&](std::int64_t slice)
+  { return motion.TrueProbeToReference(slice) * imageToProbe; };
+  if (this->OutputScalarType == FLOAT)
+  {
+    lacuna::SampleSlices(
+      execution, scene, imaging, extent, static_cast<float*>(scalars->GetVoidPointer(0)));
+  }
+  else
+  {
+    lacuna::SampleSlices(
+      execution, scene, imaging, extent, static_cast<unsigned char*>(scalars->GetVoidPointer(0)));
+  }
 
-      const lacuna::Matrix4 imageToProbe =
-        lacuna::MakeImageToProbe(this->ImageSize[0], this->PixelSpacing);
-      lacuna::SliceImaging imaging;
-      imaging.Columns = this->ImageSize[0];
-      imaging.Rows = this->ImageSize[1];
-      imaging.SpeckleLevel = this->SpeckleLevel;
-      imaging.Seed = static_cast<std::uint64_t>(this->Seed);
-      imaging.ImageToReference = [&](std::int64_t slice)
-      { return motion.TrueProbeToReference(slice) * imageToProbe; };
-      if (this->OutputScalarType == FLOAT)
-      {
-        lacuna::SampleSlices(
-          execution, scene, imaging, extent, static_cast<float*>(scalars->GetVoidPointer(0)));
-      }
-      else
-      {
-        lacuna::SampleSlices(execution, scene, imaging, extent,
-          static_cast<unsigned char*>(scalars->GetVoidPointer(0)));
-      }
-
-      std::vector<lacuna::Matrix4> probePoses(this->NumberOfSlices);
-      std::vector<lacuna::Matrix4> imagePoses(this->NumberOfSlices);
-      std::vector<double> times(this->NumberOfSlices);
-      std::vector<int> frames(this->NumberOfSlices);
-      for (int i = 0; i < this->NumberOfSlices; ++i)
-      {
-        probePoses[i] = motion.RecordedProbeToReference(i);
-        imagePoses[i] = probePoses[i] * imageToProbe;
-        times[i] = i / SlicesPerSecond;
-        frames[i] = i;
-      }
-      vtkLacunaTrackedSlices::Write(output, imagePoses, times,
-        std::vector<unsigned char>(this->NumberOfSlices, vtkLacunaTrackedSlices::Valid), frames);
-      vtkLacunaFieldData::SetMatrices(output, "ProbeToReference", probePoses);
-      vtkLacunaFieldData::SetMatrices(
-        output, vtkLacunaTrackedSlices::ImageToProbeName, { imageToProbe });
-      vtkLacunaProvenance::Record(output, this,
-        volume ? std::vector<vtkDataObject*>{ volume } : std::vector<vtkDataObject*>{},
-        this->DescribeParameters());
-      vtkLacunaCoordinates::Clear(output); // columns, rows and slices, whatever the volume's are
-    });
+  std::vector<lacuna::Matrix4> probePoses(this->NumberOfSlices);
+  std::vector<lacuna::Matrix4> imagePoses(this->NumberOfSlices);
+  std::vector<double> times(this->NumberOfSlices);
+  std::vector<int> frames(this->NumberOfSlices);
+  for (int i = 0; i < this->NumberOfSlices; ++i)
+  {
+    probePoses[i] = motion.RecordedProbeToReference(i);
+    imagePoses[i] = probePoses[i] * imageToProbe;
+    times[i] = i / SlicesPerSecond;
+    frames[i] = i;
+  }
+  vtkLacunaTrackedSlices::Write(output, imagePoses, times,
+    std::vector<unsigned char>(this->NumberOfSlices, vtkLacunaTrackedSlices::Valid), frames);
+  vtkLacunaFieldData::SetMatrices(output, "ProbeToReference", probePoses);
+  vtkLacunaFieldData::SetMatrices(
+    output, vtkLacunaTrackedSlices::ImageToProbeName, { imageToProbe });
 }
 
 //------------------------------------------------------------------------------
@@ -351,7 +314,7 @@ bool vtkLacunaPhantomSweep::AddTruth(vtkImageData* grid)
 }
 
 //------------------------------------------------------------------------------
-std::string vtkLacunaPhantomSweep::DescribeParameters()
+std::string vtkLacunaPhantomSweep::Parameters(int) const
 {
   return lacuna::ParameterText()
     .Add("NumberOfSlices", this->NumberOfSlices)
@@ -378,5 +341,5 @@ std::string vtkLacunaPhantomSweep::DescribeParameters()
 void vtkLacunaPhantomSweep::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
-  os << indent << this->DescribeParameters() << "\n";
+  os << indent << this->Parameters(0) << "\n";
 }

@@ -21,6 +21,7 @@
 #define vtkLacunaPhantomSweep_h
 
 #include "vtkImageAlgorithm.h"
+#include "vtkLacunaAlgorithm.h"
 #include "vtkLacunaSourcesPhantomsModule.h" // for export macro
 
 #include <memory> // for std::unique_ptr
@@ -34,7 +35,8 @@ class PhantomScene;
 class ProbeMotion;
 }
 
-class VTKLACUNASOURCESPHANTOMS_EXPORT vtkLacunaPhantomSweep : public vtkImageAlgorithm
+class VTKLACUNASOURCESPHANTOMS_EXPORT vtkLacunaPhantomSweep
+  : public vtkLacunaAlgorithmOf(vtkImageAlgorithm)
 {
 public:
   static vtkLacunaPhantomSweep* New();
@@ -185,9 +187,9 @@ protected:
   vtkLacunaPhantomSweep();
   ~vtkLacunaPhantomSweep() override;
   int FillInputPortInformation(int port, vtkInformation* info) override;
-  int RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
-  int RequestUpdateExtent(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
-  int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
+  void Announce(const lacuna::Ports& ports) override;
+  void Make(const lacuna::Ports& ports, vtkLacunaExecution& execution) override;
+  std::string Parameters(int port) const override;
 
   int NumberOfSlices = 60;
   int ImageSize[2] = { 320, 240 };
@@ -216,7 +218,6 @@ private:
   const lacuna::PhantomScene& GetScene();
   // The scene, or nullptr when there is none or it cannot be made.
   const lacuna::PhantomScene* FindScene();
-  std::string DescribeParameters();
 
   std::unique_ptr<lacuna::PhantomScene> Scene;
   int SceneAnatomy = -1;

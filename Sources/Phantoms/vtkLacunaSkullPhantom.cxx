@@ -7,11 +7,8 @@
 #include "vtkDataArray.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
-#include "vtkInformationVector.h"
 #include "vtkLacunaArrays.h"
 #include "vtkLacunaCoordinates.h"
-#include "vtkLacunaExecution.h"
-#include "vtkLacunaProvenance.h"
 #include "vtkLacunaVolumeDirection.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
@@ -53,52 +50,37 @@ lacuna::Skull vtkLacunaSkullPhantom::MakeSkull()
 }
 
 //------------------------------------------------------------------------------
-int vtkLacunaSkullPhantom::RequestInformation(
-  vtkInformation*, vtkInformationVector**, vtkInformationVector* outputVector)
+void vtkLacunaSkullPhantom::Announce(const lacuna::Ports& ports)
 {
-  return vtkLacunaExecution::RunInformation(this, outputVector,
-    [&]
-    {
-      const lacuna::Skull skull = this->MakeSkull();
-      const std::array<int, 3> dimensions = skull.GetDimensions();
-      const int extent[6] = { 0, dimensions[0] - 1, 0, dimensions[1] - 1, 0, dimensions[2] - 1 };
-      vtkInformation* info = outputVector->GetInformationObject(0);
-      info->Set(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), extent, 6);
-      info->Set(vtkDataObject::ORIGIN(), skull.GetOrigin().data(), 3);
-      info->Set(vtkDataObject::SPACING(), this->Spacing, 3);
-      vtkDataObject::SetPointDataActiveScalarInfo(info, VTK_SHORT, 1);
-      info->Set(vtkAlgorithm::CAN_PRODUCE_SUB_EXTENT(), 1);
-    });
+  const lacuna::Skull skull = this->MakeSkull();
+  const std::array<int, 3> dimensions = skull.GetDimensions();
+  const int extent[6] = { 0, dimensions[0] - 1, 0, dimensions[1] - 1, 0, dimensions[2] - 1 };
+  vtkInformation* info = ports.GetOutputInformation();
+  info->Set(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), extent, 6);
+  info->Set(vtkDataObject::ORIGIN(), skull.GetOrigin().data(), 3);
+  info->Set(vtkDataObject::SPACING(), this->Spacing, 3);
+  vtkDataObject::SetPointDataActiveScalarInfo(info, VTK_SHORT, 1);
 }
 
 //------------------------------------------------------------------------------
-int vtkLacunaSkullPhantom::RequestData(
-  vtkInformation*, vtkInformationVector**, vtkInformationVector* outputVector)
+void vtkLacunaSkullPhantom::Make(const lacuna::Ports& ports, vtkLacunaExecution& execution)
 {
-  return vtkLacunaExecution::Run(this, outputVector,
-    [&](vtkLacunaExecution& execution)
-    {
-      const lacuna::Skull skull = this->MakeSkull();
-      vtkInformation* info = outputVector->GetInformationObject(0);
-      lacuna::Extent extent;
-      info->Get(vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT(), extent.data());
-      const std::array<int, 3> whole = skull.GetDimensions();
-      std::ostringstream what;
-      what << "a skull of " << whole[0] << " x " << whole[1] << " x " << whole[2]
-           << " voxels (Spacing " << this->Spacing[0] << " " << this->Spacing[1] << " "
-           << this->Spacing[2] << " mm)";
-      lacuna::RequireMemory(what.str(), sizeof(short) * lacuna::CountPoints(extent));
+  const lacuna::Skull skull = this->MakeSkull();
+  lacuna::Extent extent = ports.GetExtent();
+  const std::array<int, 3> whole = skull.GetDimensions();
+  std::ostringstream what;
+  what << "a skull of " << whole[0] << " x " << whole[1] << " x " << whole[2] << " voxels (Spacing "
+       << this->Spacing[0] << " " << this->Spacing[1] << " " << this->Spacing[2] << " mm)";
+  lacuna::RequireMemory(what.str(), sizeof(short) * lacuna::CountPoints(extent));
 
-      vtkImageData* output = vtkImageData::GetData(outputVector);
-      output->SetOrigin(skull.GetOrigin().data());
-      output->SetSpacing(this->Spacing);
-      output->SetExtent(extent.data());
-      vtkDataArray* scalars = vtkLacunaArrays::AddScalars(output, VTK_SHORT, "HounsfieldUnits");
-      skull.Sample(execution, extent, static_cast<short*>(scalars->GetVoidPointer(0)));
-      vtkLacunaCoordinates::Mark(output, vtkLacunaCoordinates::Patient);
-      vtkLacunaVolumeDirection::Record(output);
-      vtkLacunaProvenance::Record(output, this, {}, this->DescribeParameters());
-    });
+  auto* output = ports.GetOutput<vtkImageData>();
+  output->SetOrigin(skull.GetOrigin().data());
+  output->SetSpacing(this->Spacing);
+  output->SetExtent(extent.data());
+  vtkDataArray* scalars = vtkLacunaArrays::AddScalars(output, VTK_SHORT, "HounsfieldUnits");
+  skull.Sample(execution, extent, static_cast<short*>(scalars->GetVoidPointer(0)));
+  vtkLacunaCoordinates::Mark(output, vtkLacunaCoordinates::Patient);
+  vtkLacunaVolumeDirection::Record(output);
 }
 
 //------------------------------------------------------------------------------
@@ -144,7 +126,7 @@ bool vtkLacunaSkullPhantom::IsInDefect(double x, double y, double z)
 }
 
 //------------------------------------------------------------------------------
-std::string vtkLacunaSkullPhantom::DescribeParameters()
+std::string vtkLacunaSkullPhantom::Parameters(int) const
 {
   return lacuna::ParameterText()
     .Add("Spacing", this->Spacing)
@@ -161,5 +143,5 @@ std::string vtkLacunaSkullPhantom::DescribeParameters()
 void vtkLacunaSkullPhantom::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
-  os << indent << this->DescribeParameters() << "\n";
+  os << indent << this->Parameters(0) << "\n";
 }

@@ -19,6 +19,7 @@
 #define vtkLacunaSkullPhantom_h
 
 #include "vtkImageAlgorithm.h"
+#include "vtkLacunaAlgorithm.h"
 #include "vtkLacunaSourcesPhantomsModule.h" // for export macro
 
 #include <string> // for std::string
@@ -28,7 +29,8 @@ namespace lacuna
 class Skull;
 }
 
-class VTKLACUNASOURCESPHANTOMS_EXPORT vtkLacunaSkullPhantom : public vtkImageAlgorithm
+class VTKLACUNASOURCESPHANTOMS_EXPORT vtkLacunaSkullPhantom
+  : public vtkLacunaAlgorithmOf(vtkImageAlgorithm)
 {
 public:
   static vtkLacunaSkullPhantom* New();
@@ -97,8 +99,9 @@ public:
 protected:
   vtkLacunaSkullPhantom();
   ~vtkLacunaSkullPhantom() override;
-  int RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
-  int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
+  void Announce(const lacuna::Ports& ports) override;
+  void Make(const lacuna::Ports& ports, vtkLacunaExecution& execution) override;
+  std::string Parameters(int port) const override;
 
   double Spacing[3] = { 1, 1, 2.3 };
   double DefectRadius = 30;
@@ -114,6 +117,5 @@ private:
 
   // Throws std::invalid_argument when a property is out of range.
   lacuna::Skull MakeSkull();
-  std::string DescribeParameters();
 };
 #endif
