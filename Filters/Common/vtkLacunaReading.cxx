@@ -1,32 +1,36 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkLacunaReading.h"
 
+#include "lacunaExecution.h"
 #include "vtkErrorCode.h"
-#include "vtkLacunaExecution.h"
-#include "vtkLacunaFailure.h"
 
 #include <filesystem>
 #include <stdexcept>
 #include <system_error>
 
 //------------------------------------------------------------------------------
-unsigned long vtkLacunaReading::RunInformation(vtkAlgorithm* reader, vtkInformationVector* outputs,
-  const char* fileName, const std::string& kind, const std::function<void()>& body)
+void vtkLacunaReading::Run(const char* fileName, const std::string& kind,
+  const std::function<void(unsigned long)>& setErrorCode, const std::function<void()>& body)
 {
-  vtkLacunaFailure::DependsOnFiles(reader);
-  unsigned long code = vtkErrorCode::NoFileNameError;
-  vtkLacunaExecution::RunInformation(reader, outputs,
-    [&]
-    {
-      if (!fileName || !*fileName)
-      {
-        throw std::runtime_error("FileName is not set; it must be " + kind);
-      }
-      std::error_code ignored;
-      code = std::filesystem::exists(fileName, ignored) ? vtkErrorCode::FileFormatError
-                                                        : vtkErrorCode::FileNotFoundError;
-      body();
-      code = vtkErrorCode::NoError;
-    });
-  return code;
+  if (!fileName || !*fileName)
+  {
+    setErrorCode(vtkErrorCode::NoFileNameError);
+    throw std::runtime_error("FileName is not set; it must be " + kind);
+  }
+  try
+  {
+    body();
+    setErrorCode(vtkErrorCode::NoError);
+  }
+  catch (const lacuna::Aborted&)
+  {
+    throw;
+  }
+  catch (const std::exception&)
+  {
+    std::error_code ignored;
+    setErrorCode(std::filesystem::exists(fileName, ignored) ? vtkErrorCode::FileFormatError
+                                                            : vtkErrorCode::FileNotFoundError);
+    throw;
+  }
 }

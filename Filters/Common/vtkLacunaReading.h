@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// How readers announce what a file has, and report what went wrong.
+/// The error codes of readers.
 #ifndef vtkLacunaReading_h
 #define vtkLacunaReading_h
 
@@ -9,17 +9,11 @@
 #include <functional>
 #include <string>
 
-class vtkAlgorithm;
-class vtkInformationVector;
-
 namespace vtkLacunaReading
 {
-/// Runs the body of reader's RequestInformation as vtkLacunaExecution::RunInformation does, and returns its
-/// error code (vtkErrorCode::NoError when all went well). What body throws becomes reader's error when data
-/// are asked for, and its code at once: that of no file name (kind says what it must be), of no such file,
-/// or of a format that is not understood.
-VTKLACUNAFILTERSCOMMON_EXPORT unsigned long RunInformation(vtkAlgorithm* reader,
-  vtkInformationVector* outputs, const char* fileName, const std::string& kind,
-  const std::function<void()>& body);
+/// Runs body, which reads from a file, and sets the error code of a reader: that of no file name (kind says what it
+/// must be), of no such file, or of a format that is not understood. Throws what body throws; a stop has no code.
+VTKLACUNAFILTERSCOMMON_EXPORT void Run(const char* fileName, const std::string& kind,
+  const std::function<void(unsigned long)>& setErrorCode, const std::function<void()>& body);
 }
 #endif

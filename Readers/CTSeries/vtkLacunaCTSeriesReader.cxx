@@ -15,20 +15,16 @@
 #include "vtkCommand.h"
 #include "vtkDataArray.h"
 #include "vtkDataObject.h"
-#include "vtkErrorCode.h"
 #include "vtkExecutive.h"
 #include "vtkExtentTranslator.h"
 #include "vtkFieldData.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationIntegerRequestKey.h"
-#include "vtkInformationVector.h"
 #include "vtkIntArray.h"
 #include "vtkLacunaArrays.h"
 #include "vtkLacunaCoordinates.h"
-#include "vtkLacunaExecution.h"
 #include "vtkLacunaFieldData.h"
-#include "vtkLacunaProvenance.h"
 #include "vtkLacunaReading.h"
 #include "vtkLacunaScalarType.h"
 #include "vtkLacunaVolumeDirection.h"
@@ -130,7 +126,6 @@ struct vtkLacunaCTSeriesReader::Content
   lacuna::DicomFolder Folder;
   vtkNew<vtkStringArray> SeriesList;
   vtkNew<vtkStringArray> Notes;
-  bool Opened = false;
   bool Warned = false; // of what follows
   std::vector<std::string> Warnings;
   lacuna::CTGeometry Geometry;
@@ -144,6 +139,7 @@ vtkStandardNewMacro(vtkLacunaCTSeriesReader);
 vtkLacunaCTSeriesReader::vtkLacunaCTSeriesReader()
   : Found(std::make_unique<Content>())
 {
+  this->Sharing = lacuna::Share::Parts;
   this->SetNumberOfInputPorts(0);
 }
 
@@ -211,7 +207,6 @@ void vtkLacunaCTSeriesReader::OpenSeries()
   add(found.Geometry.Notes);
   found.Warnings.insert(
     found.Warnings.end(), found.Geometry.Warnings.begin(), found.Geometry.Warnings.end());
-  found.Opened = true;
 }
 
 //------------------------------------------------------------------------------
@@ -257,26 +252,24 @@ void vtkLacunaCTSeriesReader::FindVolume(const lacuna::CTSeriesList& list)
 }
 
 //------------------------------------------------------------------------------
-int vtkLacunaCTSeriesReader::RequestInformation(
-  vtkInformation*, vtkInformationVector**, vtkInformationVector* outputs)
+void vtkLacunaCTSeriesReader::Announce(const lacuna::Ports& ports)
 {
   Content& found = *this->Found;
-  found.Opened = false;
   found.Warned = false;
   found.SeriesList->Reset();
   found.Notes->Reset();
-  this->SetErrorCode(vtkLacunaReading::RunInformation(this, outputs, this->FileName,
-    "a DICOM file of a CT series, or its folder",
+  vtkLacunaReading::Run(
+    this->FileName, "a DICOM file of a CT series, or its folder",
+    [this](unsigned long code) { this->SetErrorCode(code); },
     [&]
     {
       this->OpenSeries();
-      this->Announce(outputs->GetInformationObject(0));
-    }));
-  return 1;
+      this->AnnounceGrid(ports.GetOutputInformation());
+    });
 }
 
 //------------------------------------------------------------------------------
-void vtkLacunaCTSeriesReader::Announce(vtkInformation* info) const
+void vtkLacunaCTSeriesReader::AnnounceGrid(vtkInformation* info) const
 {
   const Content& found = *this->Found;
   const lacuna::CTGeometry& geometry = found.Geometry;
@@ -291,14 +284,13 @@ void vtkLacunaCTSeriesReader::Announce(vtkInformation* info) const
   info->Set(vtkDataObject::ORIGIN(), geometry.Origin.data(), 3);
   info->Set(vtkDataObject::SPACING(), geometry.Spacing.data(), 3);
   info->Set(vtkDataObject::DIRECTION(), direction, 9);
-  info->Set(vtkAlgorithm::CAN_PRODUCE_SUB_EXTENT(), 1);
   // Ranks share out whole images, each of which is read by one of them.
   info->Set(vtkExtentTranslator::UPDATE_SPLIT_MODE(), vtkExtentTranslator::Z_SLAB_MODE);
   vtkDataObject::SetPointDataActiveScalarInfo(info, vtkLacunaScalarType::ToVTK(found.Type), 1);
 }
 
 //------------------------------------------------------------------------------
-std::string vtkLacunaCTSeriesReader::DescribeParameters() const
+std::string vtkLacunaCTSeriesReader::Parameters(int) const
 {
   const lacuna::CTGeometry& geometry = this->Found->Geometry;
   return lacuna::ParameterText()
@@ -349,67 +341,46 @@ void vtkLacunaCTSeriesReader::AddFieldData(vtkImageData* output) const
     output->GetFieldData()->AddArray(array);
   }
   vtkLacunaCoordinates::Mark(output, vtkLacunaCoordinates::Patient);
-  vtkLacunaProvenance::Record(
-    output, const_cast<vtkLacunaCTSeriesReader*>(this), {}, this->DescribeParameters());
 }
 
 //------------------------------------------------------------------------------
-int vtkLacunaCTSeriesReader::RequestData(
-  vtkInformation*, vtkInformationVector**, vtkInformationVector* outputs)
+void vtkLacunaCTSeriesReader::Make(const lacuna::Ports& ports, vtkLacunaExecution& execution)
 {
   Content& found = *this->Found;
   for (const std::string& warning : found.Warnings)
   {
-    if (found.Opened && !found.Warned)
+    if (!found.Warned)
     {
       vtkWarningMacro(<< lacuna::ToPrintable(warning));
     }
   }
   found.Warned = true;
-  return vtkLacunaExecution::RunAgreed(this, outputs, true,
-    [&](vtkLacunaExecution& execution)
+  vtkInformation* info = ports.GetOutputInformation();
+  auto* output = ports.GetOutput<vtkImageData>();
+  std::array<int, 6> extent = ports.GetExtent();
+  output->SetOrigin(info->Get(vtkDataObject::ORIGIN()));
+  output->SetSpacing(info->Get(vtkDataObject::SPACING()));
+  output->SetDirectionMatrix(info->Get(vtkDataObject::DIRECTION()));
+  output->SetExtent(extent.data());
+  this->AddFieldData(output);
+  vtkLacunaReading::Run(
+    this->FileName, "", [this](unsigned long code) { this->SetErrorCode(code); },
+    [&]
     {
-      vtkInformation* info = outputs->GetInformationObject(0);
-      vtkImageData* output = vtkImageData::GetData(outputs, 0);
-      std::array<int, 6> extent{};
-      info->Get(vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT(), extent.data());
-      output->SetOrigin(info->Get(vtkDataObject::ORIGIN()));
-      output->SetSpacing(info->Get(vtkDataObject::SPACING()));
-      output->SetDirectionMatrix(info->Get(vtkDataObject::DIRECTION()));
-      output->SetExtent(extent.data());
-      this->AddFieldData(output);
-      if (output->GetNumberOfPoints() == 0)
-      {
-        return;
-      }
-      try
-      {
-        lacuna::RequireMemory("The CT volume",
-          static_cast<double>(output->GetNumberOfPoints()) *
-            static_cast<double>(lacuna::GetScalarSize(found.Type)));
-        void* voxels =
-          vtkLacunaArrays::AddScalars(output, vtkLacunaScalarType::ToVTK(found.Type), ScalarsName)
-            ->GetVoidPointer(0);
-        lacuna::PreferLargePages(voxels,
-          static_cast<std::size_t>(output->GetNumberOfPoints()) *
-            lacuna::GetScalarSize(found.Type));
-        lacuna::DicomDecoder decoder;
-        lacuna::ReadCTVolume(
-          found.Geometry, extent, found.Type, this->PaddingValue,
-          [&](const lacuna::CTFrame& frame, lacuna::CTPixels& pixels)
-          { decoder.Read(frame, pixels); },
-          voxels, execution);
-        this->SetErrorCode(vtkErrorCode::NoError);
-      }
-      catch (const lacuna::Aborted&)
-      {
-        throw;
-      }
-      catch (const std::exception&)
-      {
-        this->SetErrorCode(vtkErrorCode::FileFormatError);
-        throw;
-      }
+      lacuna::RequireMemory("The CT volume",
+        static_cast<double>(output->GetNumberOfPoints()) *
+          static_cast<double>(lacuna::GetScalarSize(found.Type)));
+      void* voxels =
+        vtkLacunaArrays::AddScalars(output, vtkLacunaScalarType::ToVTK(found.Type), ScalarsName)
+          ->GetVoidPointer(0);
+      lacuna::PreferLargePages(voxels,
+        static_cast<std::size_t>(output->GetNumberOfPoints()) * lacuna::GetScalarSize(found.Type));
+      lacuna::DicomDecoder decoder;
+      lacuna::ReadCTVolume(
+        found.Geometry, extent, found.Type, this->PaddingValue,
+        [&](const lacuna::CTFrame& frame, lacuna::CTPixels& pixels)
+        { decoder.Read(frame, pixels); },
+        voxels, execution);
     });
 }
 

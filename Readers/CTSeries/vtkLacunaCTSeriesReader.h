@@ -37,8 +37,8 @@
 #define vtkLacunaCTSeriesReader_h
 
 #include "vtkImageAlgorithm.h"
+#include "vtkLacunaAlgorithm.h"
 #include "vtkLacunaReadersCTSeriesModule.h" // for export macro
-#include "vtkLacunaVersionCompat.h"         // for stops
 
 #include <memory> // for std::unique_ptr
 #include <string> // for std::string
@@ -50,13 +50,13 @@ namespace lacuna
 struct CTSeriesList;
 }
 
-class VTKLACUNAREADERSCTSERIES_EXPORT vtkLacunaCTSeriesReader : public vtkImageAlgorithm
+class VTKLACUNAREADERSCTSERIES_EXPORT vtkLacunaCTSeriesReader
+  : public vtkLacunaAlgorithmOf(vtkImageAlgorithm)
 {
 public:
   static vtkLacunaCTSeriesReader* New();
   vtkTypeMacro(vtkLacunaCTSeriesReader, vtkImageAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
-  vtkLacunaKeepTimeAtStops();
 
   /// What is done about slices that are missing or not equally spaced.
   enum MissingSlicesType
@@ -140,10 +140,9 @@ protected:
   vtkLacunaCTSeriesReader();
   ~vtkLacunaCTSeriesReader() override;
 
-  int RequestInformation(
-    vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
-  int RequestData(
-    vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
+  void Announce(const lacuna::Ports& ports) override;
+  void Make(const lacuna::Ports& ports, vtkLacunaExecution& execution) override;
+  std::string Parameters(int port) const override;
 
 private:
   vtkLacunaCTSeriesReader(const vtkLacunaCTSeriesReader&) = delete;
@@ -151,10 +150,9 @@ private:
 
   struct Content;
   void OpenSeries();
-  void Announce(vtkInformation* info) const;
+  void AnnounceGrid(vtkInformation* info) const;
   void FindVolume(const lacuna::CTSeriesList& list);
   void AddFieldData(vtkImageData* output) const;
-  std::string DescribeParameters() const;
 
   char* FileName = nullptr;
   char* SeriesUID = nullptr;

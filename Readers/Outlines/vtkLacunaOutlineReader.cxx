@@ -9,16 +9,11 @@
 #include "lacunaStructureSet.h"
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
-#include "vtkErrorCode.h"
 #include "vtkInformation.h"
-#include "vtkInformationVector.h"
 #include "vtkIntArray.h"
 #include "vtkLacunaArrays.h"
 #include "vtkLacunaCoordinates.h"
-#include "vtkLacunaExecution.h"
-#include "vtkLacunaProvenance.h"
 #include "vtkLacunaReading.h"
-#include "vtkLacunaRequest.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkPoints.h"
@@ -107,6 +102,7 @@ vtkStandardNewMacro(vtkLacunaOutlineReader);
 //------------------------------------------------------------------------------
 vtkLacunaOutlineReader::vtkLacunaOutlineReader()
 {
+  this->Sharing = lacuna::Share::FirstRank;
   this->SetNumberOfInputPorts(0);
 }
 
@@ -123,11 +119,11 @@ int vtkLacunaOutlineReader::CanReadFile(const char* fileName)
 }
 
 //------------------------------------------------------------------------------
-int vtkLacunaOutlineReader::RequestInformation(
-  vtkInformation*, vtkInformationVector**, vtkInformationVector* outputs)
+void vtkLacunaOutlineReader::Announce(const lacuna::Ports&)
 {
-  this->SetErrorCode(vtkLacunaReading::RunInformation(this, outputs, this->FileName,
-    "outlines in a file (.mrk.json, .dcm, .csv)",
+  vtkLacunaReading::Run(
+    this->FileName, "outlines in a file (.mrk.json, .dcm, .csv)",
+    [this](unsigned long code) { this->SetErrorCode(code); },
     [&]
     {
       std::error_code ignored;
@@ -135,52 +131,40 @@ int vtkLacunaOutlineReader::RequestInformation(
       {
         throw std::runtime_error(std::string(this->FileName) + ": there is no such file");
       }
-      outputs->GetInformationObject(0)->Set(vtkAlgorithm::CAN_HANDLE_PIECE_REQUEST(), 1);
-    }));
-  return 1;
+    });
 }
 
 //------------------------------------------------------------------------------
-int vtkLacunaOutlineReader::RequestData(
-  vtkInformation*, vtkInformationVector**, vtkInformationVector* outputs)
+void vtkLacunaOutlineReader::Make(const lacuna::Ports& ports, vtkLacunaExecution&)
 {
-  return vtkLacunaExecution::RunAgreed(this, outputs, vtkLacunaRequest::IsFirst(outputs),
-    [&](vtkLacunaExecution&)
+  vtkLacunaReading::Run(
+    this->FileName, "", [this](unsigned long code) { this->SetErrorCode(code); },
+    [&]
     {
-      try
+      const lacuna::OutlineSet outlines = ReadOutlines(this->FileName);
+      auto* output = ports.GetOutput<vtkPolyData>();
+      FillOutput(outlines, output);
+      if (outlines.IsPatient)
       {
-        this->ReadInto(vtkPolyData::GetData(outputs));
-        this->SetErrorCode(vtkErrorCode::NoError);
+        vtkLacunaCoordinates::Mark(output, vtkLacunaCoordinates::Patient);
       }
-      catch (const std::exception&)
+      for (const std::string& warning : outlines.Warnings)
       {
-        this->SetErrorCode(vtkErrorCode::FileFormatError);
-        throw;
+        vtkWarningMacro(<< lacuna::ToPrintable(this->FileName + (": " + warning)));
       }
     });
 }
 
 //------------------------------------------------------------------------------
-void vtkLacunaOutlineReader::ReadInto(vtkPolyData* output)
+std::string vtkLacunaOutlineReader::Parameters(int) const
 {
-  const lacuna::OutlineSet outlines = ReadOutlines(this->FileName);
-  FillOutput(outlines, output);
-  if (outlines.IsPatient)
-  {
-    vtkLacunaCoordinates::Mark(output, vtkLacunaCoordinates::Patient);
-  }
   std::error_code ignored;
-  vtkLacunaProvenance::Record(output, this, {},
-    lacuna::ParameterText()
-      // tells which file it was to one who has it, and no name of a patient
-      .Add("FileName",
-        "fnv1a:" + lacuna::HashText(std::filesystem::path(this->FileName).filename().string()))
-      .Add("FileSize", std::filesystem::file_size(this->FileName, ignored))
-      .Get());
-  for (const std::string& warning : outlines.Warnings)
-  {
-    vtkWarningMacro(<< lacuna::ToPrintable(this->FileName + (": " + warning)));
-  }
+  return lacuna::ParameterText()
+    // tells which file it was to one who has it, and no name of a patient
+    .Add("FileName",
+      "fnv1a:" + lacuna::HashText(std::filesystem::path(this->FileName).filename().string()))
+    .Add("FileSize", std::filesystem::file_size(this->FileName, ignored))
+    .Get();
 }
 
 //------------------------------------------------------------------------------

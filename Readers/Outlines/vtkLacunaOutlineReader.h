@@ -28,17 +28,17 @@
 #ifndef vtkLacunaOutlineReader_h
 #define vtkLacunaOutlineReader_h
 
+#include "vtkLacunaAlgorithm.h"
 #include "vtkLacunaReadersOutlinesModule.h" // for export macro
-#include "vtkLacunaVersionCompat.h"         // for stops
 #include "vtkPolyDataAlgorithm.h"
 
-class VTKLACUNAREADERSOUTLINES_EXPORT vtkLacunaOutlineReader : public vtkPolyDataAlgorithm
+class VTKLACUNAREADERSOUTLINES_EXPORT vtkLacunaOutlineReader
+  : public vtkLacunaAlgorithmOf(vtkPolyDataAlgorithm)
 {
 public:
   static vtkLacunaOutlineReader* New();
   vtkTypeMacro(vtkLacunaOutlineReader, vtkPolyDataAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
-  vtkLacunaKeepTimeAtStops();
 
   ///@{
   /// The file.
@@ -54,15 +54,13 @@ protected:
   vtkLacunaOutlineReader();
   ~vtkLacunaOutlineReader() override;
 
-  int RequestInformation(
-    vtkInformation*, vtkInformationVector**, vtkInformationVector* outputs) override;
-  int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector* outputs) override;
+  void Announce(const lacuna::Ports& ports) override;
+  void Make(const lacuna::Ports& ports, vtkLacunaExecution& execution) override;
+  std::string Parameters(int port) const override;
 
 private:
   vtkLacunaOutlineReader(const vtkLacunaOutlineReader&) = delete;
   void operator=(const vtkLacunaOutlineReader&) = delete;
-
-  void ReadInto(vtkPolyData* output);
 
   char* FileName = nullptr;
 };

@@ -12,16 +12,12 @@
 #include "lacunaSweepTransforms.h"
 #include "vtkDataArray.h"
 #include "vtkDataObject.h"
-#include "vtkErrorCode.h"
 #include "vtkFieldData.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
-#include "vtkInformationVector.h"
 #include "vtkLacunaArrays.h"
-#include "vtkLacunaExecution.h"
 #include "vtkLacunaFieldData.h"
 #include "vtkLacunaProvenance.h"
-#include "vtkLacunaRanks.h"
 #include "vtkLacunaReading.h"
 #include "vtkLacunaScalarType.h"
 #include "vtkLacunaSequenceFile.h"
@@ -75,6 +71,7 @@ struct vtkLacunaTrackedSliceReader::Sequence
   std::shared_ptr<vtkLacunaSequenceFile> File;
   std::unique_ptr<lacuna::SweepReplay> Replay; // null unless asked for
   vtkSmartPointer<vtkImageData> Fields;        // its field data are those of every output
+  std::string Chain;                           // of transforms, for the provenance
   // What was read for the time before this one.
   vtkSmartPointer<vtkDataArray> Scalars;
   int Extent[6] = { 0, -1, 0, -1, 0, -1 };
@@ -86,6 +83,7 @@ vtkStandardNewMacro(vtkLacunaTrackedSliceReader);
 //------------------------------------------------------------------------------
 vtkLacunaTrackedSliceReader::vtkLacunaTrackedSliceReader()
 {
+  this->Sharing = lacuna::Share::Parts;
   this->SetNumberOfInputPorts(0);
   this->SetImageFrame("Image");
   this->SetReferenceFrame("Reference");
@@ -134,17 +132,17 @@ void vtkLacunaTrackedSliceReader::OpenSequence(Sequence& sequence)
 }
 
 //------------------------------------------------------------------------------
-int vtkLacunaTrackedSliceReader::RequestInformation(
-  vtkInformation*, vtkInformationVector**, vtkInformationVector* outputs)
+void vtkLacunaTrackedSliceReader::Announce(const lacuna::Ports& ports)
 {
   this->Opened.reset();
   this->Preview.clear();
-  vtkInformation* info = outputs->GetInformationObject(0);
+  vtkInformation* info = ports.GetOutputInformation();
   info->Remove(vtkStreamingDemandDrivenPipeline::TIME_STEPS());
   info->Remove(vtkStreamingDemandDrivenPipeline::TIME_RANGE());
   info->Remove(vtkLacunaSliceStream::STREAM());
-  this->SetErrorCode(vtkLacunaReading::RunInformation(this, outputs, this->FileName,
-    "a tracked sequence file (.mha, .mhd, .nrrd, .nhdr)",
+  vtkLacunaReading::Run(
+    this->FileName, "a tracked sequence file (.mha, .mhd, .nrrd, .nhdr)",
+    [this](unsigned long code) { this->SetErrorCode(code); },
     [&]
     {
       auto sequence = std::make_unique<Sequence>();
@@ -157,7 +155,6 @@ int vtkLacunaTrackedSliceReader::RequestInformation(
       info->Set(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), extent, 6);
       info->Set(vtkDataObject::ORIGIN(), origin, 3);
       info->Set(vtkDataObject::SPACING(), spacing, 3);
-      info->Set(vtkAlgorithm::CAN_PRODUCE_SUB_EXTENT(), 1);
       vtkDataObject::SetPointDataActiveScalarInfo(
         info, vtkLacunaScalarType::ToVTK(file.Pixels->GetScalarType()), 1);
       if (sequence->Replay)
@@ -174,13 +171,13 @@ int vtkLacunaTrackedSliceReader::RequestInformation(
       }
       this->Preview = file.DescribePreview();
       this->Opened = std::move(sequence);
-    }));
-  return 1;
+    });
 }
 
 //------------------------------------------------------------------------------
-std::string vtkLacunaTrackedSliceReader::DescribeParameters(const std::string& chain) const
+std::string vtkLacunaTrackedSliceReader::Parameters(int) const
 {
+  const std::string& chain = this->Opened->Chain;
   const lacuna::SequenceHeader& header = this->Opened->File->Header;
   lacuna::ParameterText text;
   text.Add("FileName", BaseName(this->FileName))
@@ -265,12 +262,11 @@ void vtkLacunaTrackedSliceReader::MakeFieldData()
   {
     AddStrings(output, vtkLacunaTrackedSlices::PreviewName, { this->Preview });
   }
-  vtkLacunaProvenance::Record(output, this, {}, this->DescribeParameters(sweep.Chain));
-  if (!steps.empty()) // the file goes on with them
+  if (!steps.empty()) // the base goes on with them
   {
-    steps.push_back(vtkLacunaProvenance::Get(output).back());
     AddStrings(output, vtkLacunaProvenance::ArrayName, steps);
   }
+  this->Opened->Chain = sweep.Chain;
 
   std::vector<std::string> warnings = header.Warnings;
   if (!this->Opened->File->Pixels->GetWarning().empty())
@@ -352,55 +348,36 @@ void vtkLacunaTrackedSliceReader::HideSlices(vtkImageData* output, int shown) co
 }
 
 //------------------------------------------------------------------------------
-int vtkLacunaTrackedSliceReader::RequestData(
-  vtkInformation*, vtkInformationVector**, vtkInformationVector* outputs)
+void vtkLacunaTrackedSliceReader::Make(const lacuna::Ports& ports, vtkLacunaExecution& execution)
 {
-  return vtkLacunaExecution::RunAgreed(this, outputs, true,
-    [&](vtkLacunaExecution& execution)
+  vtkInformation* info = ports.GetOutputInformation();
+  auto* output = ports.GetOutput<vtkImageData>();
+  output->SetOrigin(info->Get(vtkDataObject::ORIGIN()));
+  output->SetSpacing(info->Get(vtkDataObject::SPACING()));
+  output->SetExtent(ports.GetExtent().data());
+  const int all = this->Opened->File->GetStack().Slices;
+  int shown = all;
+  if (this->Opened->Replay && info->Has(vtkStreamingDemandDrivenPipeline::UPDATE_TIME_STEP()))
+  {
+    const double time = info->Get(vtkStreamingDemandDrivenPipeline::UPDATE_TIME_STEP());
+    shown = static_cast<int>(this->Opened->Replay->GetNumberOfSlices(time));
+    output->GetInformation()->Set(
+      vtkDataObject::DATA_TIME_STEP(), this->Opened->Replay->GetTimeBefore(time));
+  }
+  vtkLacunaReading::Run(
+    this->FileName, "", [this](unsigned long code) { this->SetErrorCode(code); },
+    [&]
     {
-      vtkInformation* info = outputs->GetInformationObject(0);
-      vtkImageData* output = vtkImageData::GetData(outputs, 0);
-      int extent[6];
-      info->Get(vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT(), extent);
-      output->SetOrigin(info->Get(vtkDataObject::ORIGIN()));
-      output->SetSpacing(info->Get(vtkDataObject::SPACING()));
-      output->SetExtent(extent);
-      const int all = this->Opened->File->GetStack().Slices;
-      int shown = all;
-      if (this->Opened->Replay && info->Has(vtkStreamingDemandDrivenPipeline::UPDATE_TIME_STEP()))
+      if (!this->Opened->Fields)
       {
-        const double time = info->Get(vtkStreamingDemandDrivenPipeline::UPDATE_TIME_STEP());
-        shown = static_cast<int>(this->Opened->Replay->GetNumberOfSlices(time));
-        output->GetInformation()->Set(
-          vtkDataObject::DATA_TIME_STEP(), this->Opened->Replay->GetTimeBefore(time));
+        this->MakeFieldData();
       }
-      try
+      output->GetFieldData()->ShallowCopy(this->Opened->Fields->GetFieldData());
+      if (shown < all)
       {
-        if (!this->Opened->Fields)
-        {
-          this->MakeFieldData();
-        }
-        output->GetFieldData()->ShallowCopy(this->Opened->Fields->GetFieldData());
-        if (output->GetNumberOfPoints() == 0)
-        {
-          return;
-        }
-        if (shown < all)
-        {
-          this->HideSlices(output, shown);
-        }
-        this->ReadPixels(output, shown, execution);
-        this->SetErrorCode(vtkErrorCode::NoError);
+        this->HideSlices(output, shown);
       }
-      catch (const lacuna::Aborted&)
-      {
-        throw;
-      }
-      catch (const std::exception&)
-      {
-        this->SetErrorCode(vtkErrorCode::FileFormatError);
-        throw;
-      }
+      this->ReadPixels(output, shown, execution);
     });
 }
 

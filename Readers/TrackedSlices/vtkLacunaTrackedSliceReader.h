@@ -69,21 +69,21 @@
 #define vtkLacunaTrackedSliceReader_h
 
 #include "vtkImageAlgorithm.h"
+#include "vtkLacunaAlgorithm.h"
 #include "vtkLacunaReadersTrackedSlicesModule.h" // for export macro
-#include "vtkLacunaVersionCompat.h"              // for stops
 
 #include <memory> // for std::unique_ptr
 #include <string> // for std::string
 
 class vtkLacunaExecution;
 
-class VTKLACUNAREADERSTRACKEDSLICES_EXPORT vtkLacunaTrackedSliceReader : public vtkImageAlgorithm
+class VTKLACUNAREADERSTRACKEDSLICES_EXPORT vtkLacunaTrackedSliceReader
+  : public vtkLacunaAlgorithmOf(vtkImageAlgorithm)
 {
 public:
   static vtkLacunaTrackedSliceReader* New();
   vtkTypeMacro(vtkLacunaTrackedSliceReader, vtkImageAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
-  vtkLacunaKeepTimeAtStops();
 
   ///@{
   /// The sequence file.
@@ -164,10 +164,9 @@ protected:
   vtkLacunaTrackedSliceReader();
   ~vtkLacunaTrackedSliceReader() override;
 
-  int RequestInformation(
-    vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
-  int RequestData(
-    vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
+  void Announce(const lacuna::Ports& ports) override;
+  void Make(const lacuna::Ports& ports, vtkLacunaExecution& execution) override;
+  std::string Parameters(int port) const override;
 
 private:
   vtkLacunaTrackedSliceReader(const vtkLacunaTrackedSliceReader&) = delete;
@@ -179,7 +178,6 @@ private:
   void ReadPixels(vtkImageData* output, int shown, vtkLacunaExecution& execution);
   void HideSlices(vtkImageData* output, int shown) const;
   void MakeFieldData();
-  std::string DescribeParameters(const std::string& chain) const;
 
   char* FileName = nullptr;
   char* CalibrationFileName = nullptr;

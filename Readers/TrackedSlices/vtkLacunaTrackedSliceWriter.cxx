@@ -3,15 +3,13 @@
 
 #include "lacunaOutputFile.h"
 #include "lacunaPrintableText.h"
-#include "vtkErrorCode.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
+#include "vtkLacunaAlgorithm.h"
 #include "vtkLacunaExecution.h"
-#include "vtkLacunaRequest.h"
 #include "vtkLacunaSequenceContent.h"
 #include "vtkLacunaSliceStream.h"
-#include "vtkLacunaWriting.h"
 #include "vtkLogger.h"
 #include "vtkObjectFactory.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
@@ -36,53 +34,22 @@ int vtkLacunaTrackedSliceWriter::FillInputPortInformation(int, vtkInformation* i
 }
 
 //------------------------------------------------------------------------------
-int vtkLacunaTrackedSliceWriter::ProcessRequest(
-  vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
+std::string vtkLacunaTrackedSliceWriter::Ask(vtkInformation* input)
 {
-  vtkInformation* info = inputs[0]->GetInformationObject(0);
-  if (request->Has(vtkStreamingDemandDrivenPipeline::REQUEST_UPDATE_EXTENT()) && info &&
-    info->Has(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT()))
-  {
-    if (this->Piece > 0)
-    {
-      vtkLacunaRequest::Nothing(this, info); // the first one writes
-    }
-    else if (!vtkLacunaSliceStream::RequestFields(this, info))
-    {
-      vtkLacunaRequest::Whole(this, info, nullptr);
-    }
-    return 1;
-  }
-  return this->Superclass::ProcessRequest(request, inputs, outputs);
+  return vtkLacunaSliceStream::Find(this)
+    ? lacuna::AskForExtent(input, vtkLacunaSliceStream::GetFirstSlice(input))
+    : lacuna::AskForAll(input);
 }
 
 //------------------------------------------------------------------------------
-int vtkLacunaTrackedSliceWriter::Write()
+void vtkLacunaTrackedSliceWriter::WriteFile()
 {
-  this->FileSize = 0;
-  this->Superclass::Write();
-  this->SetErrorCode(vtkLacunaWriting::Check(this, this->FileSize > 0 || this->Piece > 0));
-  return this->GetErrorCode() == vtkErrorCode::NoError ? 1 : 0;
-}
-
-//------------------------------------------------------------------------------
-void vtkLacunaTrackedSliceWriter::WriteData()
-{
-  this->FileSize = 0;
-  if (this->Piece > 0)
+  auto* stack = vtkImageData::SafeDownCast(this->GetInput());
+  if (!stack || stack->GetNumberOfPoints() == 0)
   {
-    return; // another process writes
+    throw std::runtime_error("the input has no slices");
   }
-  this->SetErrorCode(vtkLacunaWriting::Run(this, this->FileName,
-    [this]
-    {
-      auto* stack = vtkImageData::SafeDownCast(this->GetInput());
-      if (!stack || stack->GetNumberOfPoints() == 0)
-      {
-        throw std::runtime_error("the input has no slices");
-      }
-      this->WriteStack(stack);
-    }));
+  this->WriteStack(stack);
 }
 
 //------------------------------------------------------------------------------

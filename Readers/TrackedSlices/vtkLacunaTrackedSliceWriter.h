@@ -36,7 +36,7 @@
 #define vtkLacunaTrackedSliceWriter_h
 
 #include "vtkLacunaReadersTrackedSlicesModule.h" // for export macro
-#include "vtkWriter.h"
+#include "vtkLacunaWriter.h"
 
 #include <string> // for std::string
 
@@ -46,16 +46,15 @@ namespace lacuna
 class SequenceKind;
 }
 
-class VTKLACUNAREADERSTRACKEDSLICES_EXPORT vtkLacunaTrackedSliceWriter : public vtkWriter
+class VTKLACUNAREADERSTRACKEDSLICES_EXPORT vtkLacunaTrackedSliceWriter : public vtkLacunaWriter
 {
 public:
   static vtkLacunaTrackedSliceWriter* New();
-  vtkTypeMacro(vtkLacunaTrackedSliceWriter, vtkWriter);
+  vtkTypeMacro(vtkLacunaTrackedSliceWriter, vtkLacunaWriter);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   /// Updates the input and writes. Returns 1, or 0 when there is no new file, also because a filter
   /// before this one failed.
-  int Write() override;
 
   ///@{
   /// The file to write: .mha, .mhd, .nrrd or .nhdr.
@@ -92,15 +91,13 @@ public:
   vtkGetMacro(FileSize, vtkTypeInt64);
   ///@}
 
-  int ProcessRequest(
-    vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
-
 protected:
   vtkLacunaTrackedSliceWriter() = default;
   ~vtkLacunaTrackedSliceWriter() override;
 
   int FillInputPortInformation(int port, vtkInformation* info) override;
-  void WriteData() override;
+  std::string Ask(vtkInformation* input) override;
+  void WriteFile() override;
 
 private:
   vtkLacunaTrackedSliceWriter(const vtkLacunaTrackedSliceWriter&) = delete;
@@ -109,11 +106,7 @@ private:
   void WriteStack(vtkImageData* stack);
   std::string DescribeNeighbour(const lacuna::SequenceKind& kind) const;
 
-  char* FileName = nullptr;
   int CompressionLevel = 1;
   bool KeepPatientIdentity = false;
-  int Piece = 0;
-  int NumberOfPieces = 1;
-  vtkTypeInt64 FileSize = 0;
 };
 #endif

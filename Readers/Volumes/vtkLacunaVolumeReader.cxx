@@ -10,16 +10,12 @@
 #include "lacunaVolumeGrid.h"
 #include "vtkDataArray.h"
 #include "vtkDataObject.h"
-#include "vtkErrorCode.h"
 #include "vtkExtentTranslator.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationIntegerRequestKey.h"
-#include "vtkInformationVector.h"
 #include "vtkLacunaArrays.h"
 #include "vtkLacunaCoordinates.h"
-#include "vtkLacunaExecution.h"
-#include "vtkLacunaProvenance.h"
 #include "vtkLacunaReading.h"
 #include "vtkLacunaScalarType.h"
 #include "vtkLacunaVolumeDirection.h"
@@ -58,6 +54,7 @@ vtkStandardNewMacro(vtkLacunaVolumeReader);
 //------------------------------------------------------------------------------
 vtkLacunaVolumeReader::vtkLacunaVolumeReader()
 {
+  this->Sharing = lacuna::Share::Parts;
   this->SetNumberOfInputPorts(0);
 }
 
@@ -121,24 +118,23 @@ void vtkLacunaVolumeReader::OpenVolume(Content& content)
 }
 
 //------------------------------------------------------------------------------
-int vtkLacunaVolumeReader::RequestInformation(
-  vtkInformation*, vtkInformationVector**, vtkInformationVector* outputs)
+void vtkLacunaVolumeReader::Announce(const lacuna::Ports& ports)
 {
   this->Opened.reset();
-  this->SetErrorCode(vtkLacunaReading::RunInformation(this, outputs, this->FileName,
-    "a volume in a file (.mha, .mhd, .nrrd, .nhdr, .nii, .nii.gz)",
+  vtkLacunaReading::Run(
+    this->FileName, "a volume in a file (.mha, .mhd, .nrrd, .nhdr, .nii, .nii.gz)",
+    [this](unsigned long code) { this->SetErrorCode(code); },
     [&]
     {
       auto content = std::make_unique<Content>();
       this->OpenVolume(*content);
       this->Opened = std::move(content);
-      this->Announce(outputs->GetInformationObject(0));
-    }));
-  return 1;
+      this->AnnounceGrid(ports.GetOutputInformation());
+    });
 }
 
 //------------------------------------------------------------------------------
-void vtkLacunaVolumeReader::Announce(vtkInformation* info) const
+void vtkLacunaVolumeReader::AnnounceGrid(vtkInformation* info) const
 {
   const lacuna::VolumeGrid& grid = this->Opened->Grid;
   int extent[6] = { 0, 0, 0, 0, 0, 0 };
@@ -155,7 +151,6 @@ void vtkLacunaVolumeReader::Announce(vtkInformation* info) const
   info->Set(vtkDataObject::ORIGIN(), grid.Origin.data(), 3);
   info->Set(vtkDataObject::SPACING(), grid.Spacing.data(), 3);
   info->Set(vtkDataObject::DIRECTION(), direction, 9);
-  info->Set(vtkAlgorithm::CAN_PRODUCE_SUB_EXTENT(), 1);
   // ranks share out whole slices
   info->Set(vtkExtentTranslator::UPDATE_SPLIT_MODE(), vtkExtentTranslator::Z_SLAB_MODE);
   vtkDataObject::SetPointDataActiveScalarInfo(info, vtkLacunaScalarType::ToVTK(this->Opened->Type),
@@ -171,16 +166,6 @@ void vtkLacunaVolumeReader::AddFieldData(vtkImageData* output)
   {
     vtkLacunaCoordinates::Mark(output, vtkLacunaCoordinates::Patient);
   }
-  const char* const transforms[] = { "Automatic", "SForm", "QForm" };
-  std::error_code ignored;
-  vtkLacunaProvenance::Record(output, this, {},
-    lacuna::ParameterText()
-      // tells which file it was to one who has it, and no name of a patient
-      .Add("FileName",
-        "fnv1a:" + lacuna::HashText(std::filesystem::path(this->FileName).filename().string()))
-      .Add("FileSize", std::filesystem::file_size(content.File.Slices.DataFileName, ignored))
-      .Add("NIfTITransform", transforms[this->NIfTITransform])
-      .Get());
   if (!content.Warned)
   {
     for (const std::string& warning : content.File.Warnings)
@@ -192,54 +177,50 @@ void vtkLacunaVolumeReader::AddFieldData(vtkImageData* output)
 }
 
 //------------------------------------------------------------------------------
-int vtkLacunaVolumeReader::RequestData(
-  vtkInformation*, vtkInformationVector**, vtkInformationVector* outputs)
+void vtkLacunaVolumeReader::Make(const lacuna::Ports& ports, vtkLacunaExecution& execution)
 {
-  return vtkLacunaExecution::RunAgreed(this, outputs, true,
-    [&](vtkLacunaExecution& execution)
+  Content& content = *this->Opened;
+  vtkInformation* info = ports.GetOutputInformation();
+  auto* output = ports.GetOutput<vtkImageData>();
+  std::array<int, 6> extent = ports.GetExtent();
+  output->SetOrigin(info->Get(vtkDataObject::ORIGIN()));
+  output->SetSpacing(info->Get(vtkDataObject::SPACING()));
+  output->SetDirectionMatrix(info->Get(vtkDataObject::DIRECTION()));
+  output->SetExtent(extent.data());
+  this->AddFieldData(output);
+  vtkLacunaReading::Run(
+    this->FileName, "", [this](unsigned long code) { this->SetErrorCode(code); },
+    [&]
     {
-      Content& content = *this->Opened;
-      vtkInformation* info = outputs->GetInformationObject(0);
-      vtkImageData* output = vtkImageData::GetData(outputs, 0);
-      std::array<int, 6> extent{};
-      info->Get(vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT(), extent.data());
-      output->SetOrigin(info->Get(vtkDataObject::ORIGIN()));
-      output->SetSpacing(info->Get(vtkDataObject::SPACING()));
-      output->SetDirectionMatrix(info->Get(vtkDataObject::DIRECTION()));
-      output->SetExtent(extent.data());
-      this->AddFieldData(output);
-      if (output->GetNumberOfPoints() == 0)
-      {
-        return;
-      }
-      try
-      {
-        const std::int64_t channels = content.File.Slices.Channels;
-        lacuna::RequireMemory("The volume",
-          static_cast<double>(output->GetNumberOfPoints()) * static_cast<double>(channels) *
-              static_cast<double>(lacuna::GetScalarSize(content.Type)) +
-            static_cast<double>(content.Pixels->GetFrameSize()));
-        vtkSmartPointer<vtkDataArray> scalars;
-        scalars.TakeReference(
-          vtkDataArray::CreateDataArray(vtkLacunaScalarType::ToVTK(content.Type)));
-        scalars->SetName(ScalarsName);
-        scalars->SetNumberOfComponents(static_cast<int>(channels));
-        vtkLacunaArrays::SetNumberOfTuples(scalars, output->GetNumberOfPoints());
-        lacuna::ReadVolume(content.File, content.Grid, *content.Pixels, extent,
-          scalars->GetVoidPointer(0), execution);
-        output->GetPointData()->SetScalars(scalars);
-        this->SetErrorCode(vtkErrorCode::NoError);
-      }
-      catch (const lacuna::Aborted&)
-      {
-        throw;
-      }
-      catch (const std::exception&)
-      {
-        this->SetErrorCode(vtkErrorCode::FileFormatError);
-        throw;
-      }
+      const std::int64_t channels = content.File.Slices.Channels;
+      lacuna::RequireMemory("The volume",
+        static_cast<double>(output->GetNumberOfPoints()) * static_cast<double>(channels) *
+            static_cast<double>(lacuna::GetScalarSize(content.Type)) +
+          static_cast<double>(content.Pixels->GetFrameSize()));
+      vtkSmartPointer<vtkDataArray> scalars;
+      scalars.TakeReference(
+        vtkDataArray::CreateDataArray(vtkLacunaScalarType::ToVTK(content.Type)));
+      scalars->SetName(ScalarsName);
+      scalars->SetNumberOfComponents(static_cast<int>(channels));
+      vtkLacunaArrays::SetNumberOfTuples(scalars, output->GetNumberOfPoints());
+      lacuna::ReadVolume(
+        content.File, content.Grid, *content.Pixels, extent, scalars->GetVoidPointer(0), execution);
+      output->GetPointData()->SetScalars(scalars);
     });
+}
+
+//------------------------------------------------------------------------------
+std::string vtkLacunaVolumeReader::Parameters(int) const
+{
+  const char* const transforms[] = { "Automatic", "SForm", "QForm" };
+  std::error_code ignored;
+  return lacuna::ParameterText()
+    // tells which file it was to one who has it, and no name of a patient
+    .Add("FileName",
+      "fnv1a:" + lacuna::HashText(std::filesystem::path(this->FileName).filename().string()))
+    .Add("FileSize", std::filesystem::file_size(this->Opened->File.Slices.DataFileName, ignored))
+    .Add("NIfTITransform", transforms[this->NIfTITransform])
+    .Get();
 }
 
 //------------------------------------------------------------------------------

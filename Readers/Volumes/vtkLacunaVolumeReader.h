@@ -30,18 +30,18 @@
 #define vtkLacunaVolumeReader_h
 
 #include "vtkImageAlgorithm.h"
+#include "vtkLacunaAlgorithm.h"
 #include "vtkLacunaReadersVolumesModule.h" // for export macro
-#include "vtkLacunaVersionCompat.h"        // for stops
 
 #include <memory> // for std::unique_ptr
 
-class VTKLACUNAREADERSVOLUMES_EXPORT vtkLacunaVolumeReader : public vtkImageAlgorithm
+class VTKLACUNAREADERSVOLUMES_EXPORT vtkLacunaVolumeReader
+  : public vtkLacunaAlgorithmOf(vtkImageAlgorithm)
 {
 public:
   static vtkLacunaVolumeReader* New();
   vtkTypeMacro(vtkLacunaVolumeReader, vtkImageAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
-  vtkLacunaKeepTimeAtStops();
 
   /// Which matrix of a NIfTI file says where the volume lies.
   enum NIfTITransformType
@@ -72,9 +72,9 @@ protected:
   vtkLacunaVolumeReader();
   ~vtkLacunaVolumeReader() override;
 
-  int RequestInformation(
-    vtkInformation*, vtkInformationVector**, vtkInformationVector* outputs) override;
-  int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector* outputs) override;
+  void Announce(const lacuna::Ports& ports) override;
+  void Make(const lacuna::Ports& ports, vtkLacunaExecution& execution) override;
+  std::string Parameters(int port) const override;
 
 private:
   vtkLacunaVolumeReader(const vtkLacunaVolumeReader&) = delete;
@@ -82,7 +82,7 @@ private:
 
   struct Content;
   void OpenVolume(Content& content);
-  void Announce(vtkInformation* info) const;
+  void AnnounceGrid(vtkInformation* info) const;
   void AddFieldData(vtkImageData* output);
 
   char* FileName = nullptr;
