@@ -17,17 +17,11 @@
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationStringKey.h"
-#include "vtkInformationVector.h"
 #include "vtkLacunaArrays.h"
 #include "vtkLacunaDepthMap.h"
-#include "vtkLacunaExecution.h"
 #include "vtkLacunaFieldData.h"
 #include "vtkLacunaMaskedVolume.h"
-#include "vtkLacunaMeeting.h"
 #include "vtkLacunaMirrored.h"
-#include "vtkLacunaProvenance.h"
-#include "vtkLacunaRanks.h"
-#include "vtkLacunaRequest.h"
 #include "vtkLacunaVolumeDirection.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
@@ -157,9 +151,8 @@ public:
 
   // Leaves of output, the input, the mirror image of a piece; result: is found, unless it is known.
   static void MirrorVolume(vtkLacunaMirror* self, vtkImageData* output, const int* piece,
-    bool isKnown, Result& result, vtkLacunaExecution& execution)
+    bool isKnown, const lacuna::Ranks& ranks, Result& result, vtkLacunaExecution& execution)
   {
-    const vtkLacunaRanks ranks;
     lacuna::MaskedVolume given;
     vtkSmartPointer<vtkDataArray> keep;
     const auto prepare = [&]
@@ -170,14 +163,7 @@ public:
         ChoosePlane(self, given, result, execution);
       }
     };
-    if (isKnown)
-    {
-      prepare();
-    }
-    else
-    {
-      ranks.Together(prepare);
-    }
+    ranks.Together(prepare);
     const int* extent = output->GetExtent();
     lacuna::VolumePart part;
     for (std::size_t c = 0; c < 6; ++c)
@@ -350,8 +336,8 @@ public:
 
 //------------------------------------------------------------------------------
 vtkLacunaMirror::vtkLacunaMirror()
-  : Meeting(std::make_unique<vtkLacunaMeeting>())
 {
+  this->Sharing = lacuna::Share::Together;
   this->SetNumberOfOutputPorts(2);
 }
 
@@ -365,73 +351,25 @@ int vtkLacunaMirror::FillOutputPortInformation(int port, vtkInformation* info)
 }
 
 //------------------------------------------------------------------------------
-int vtkLacunaMirror::RequestInformation(
-  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
+void vtkLacunaMirror::Announce(const lacuna::Ports& ports)
 {
-  return vtkLacunaExecution::RunInformation(this, outputVector,
-    [&]
-    {
-      vtkInformation* info = outputVector->GetInformationObject(0);
-      // Each rank makes the extent that VTK turns its piece into.
-      info->Set(vtkAlgorithm::CAN_PRODUCE_SUB_EXTENT(), 1);
-      // a volume keeps its type; depths may come in any, and become double
-      if (IsAnnouncedDepthMap(inputVector[0]->GetInformationObject(0)))
-      {
-        vtkDataObject::SetPointDataActiveScalarInfo(info, VTK_DOUBLE, 1);
-      }
-    });
-}
-
-//------------------------------------------------------------------------------
-int vtkLacunaMirror::RequestUpdateExtent(
-  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
-{
-  // Any voxel may be the image of any other, and the plane depends on all. All ranks judge together.
-  this->Meeting->AskForWhole(
-    this, inputVector, vtkLacunaRanks().GetNumber() > 1 ? nullptr : outputVector);
-  return 1;
-}
-
-//------------------------------------------------------------------------------
-int vtkLacunaMirror::RequestData(
-  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
-{
-  const vtkLacunaRanks ranks;
-  if (ranks.GetNumber() == 1)
+  vtkInformation* info = ports.GetOutputInformation();
+  info->Set(vtkAlgorithm::CAN_PRODUCE_SUB_EXTENT(), 1); // each rank makes its part
+  // a volume keeps its type; depths may come in any, and become double
+  if (IsAnnouncedDepthMap(ports.GetInputInformation()))
   {
-    this->Meeting->Forget();
-    if (!vtkLacunaRequest::IsWanted(outputVector))
-    {
-      return 1;
-    }
+    vtkDataObject::SetPointDataActiveScalarInfo(info, VTK_DOUBLE, 1);
   }
-  const auto body = [&](vtkLacunaExecution& execution)
-  {
-    vtkImageData* input = vtkImageData::GetData(inputVector[0]);
-    const bool hasData = input && input->GetNumberOfPoints() > 0;
-    const auto make = [&](bool ranksMeet)
-    {
-      if (hasData) // empty in, empty out
-      {
-        this->Make(inputVector, outputVector, ranksMeet, execution);
-      }
-    };
-    const auto times = vtkLacunaRequest::GetTimes(this, inputVector[0]->GetInformationObject(0));
-    if (!this->Meeting->Hold(this, times, hasData, ranks, [&] { make(true); }))
-    {
-      make(false);
-    }
-  };
-  return vtkLacunaExecution::RunTogether(this, outputVector, body);
 }
 
 //------------------------------------------------------------------------------
-void vtkLacunaMirror::Make(vtkInformationVector** inputs, vtkInformationVector* outputs,
-  bool ranksMeet, vtkLacunaExecution& execution)
+// Any voxel may be the image of any other, and the plane depends on all. All ranks judge together.
+void vtkLacunaMirror::Make(const lacuna::Ports& ports, vtkLacunaExecution& execution)
 {
-  vtkImageData* input = vtkImageData::GetData(inputs[0]);
-  const bool isWanted = vtkLacunaRequest::IsWanted(outputs);
-  const vtkLacunaRanks ranks;
+  auto* input = ports.GetInput<vtkImageData>();
+  const bool isWanted = ports.IsAsked();
+  const bool ranksMeet = !ports.HaveMet;
+  const lacuna::Ranks& ranks = ports.Ranks;
   bool isMap = false;
   const auto check = [&]
   {
@@ -453,16 +391,9 @@ void vtkLacunaMirror::Make(vtkInformationVector** inputs, vtkInformationVector* 
     isMap = IsDepthMap(input);
   };
   // What is wrong on one rank only may not keep the others waiting.
-  if (ranksMeet)
-  {
-    ranks.Together(check);
-    isMap = !ranks.AllFine(!isMap);
-  }
-  else
-  {
-    check();
-  }
-  vtkInformation* info = outputs->GetInformationObject(0);
+  ranks.Together(check);
+  isMap = !ranks.AllFine(!isMap);
+  vtkInformation* info = ports.GetOutputInformation();
   const int* extent = input->GetExtent();
   int piece[6];
   for (int c = 0; c < 3; ++c)
@@ -488,7 +419,7 @@ void vtkLacunaMirror::Make(vtkInformationVector** inputs, vtkInformationVector* 
     }
     if (ranksMeet || isWanted)
     {
-      Internals::MirrorVolume(this, mirrored, piece, !ranksMeet, result, execution);
+      Internals::MirrorVolume(this, mirrored, piece, !ranksMeet, ranks, result, execution);
     }
     if (ranksMeet)
     {
@@ -510,8 +441,9 @@ void vtkLacunaMirror::Make(vtkInformationVector** inputs, vtkInformationVector* 
   {
     parameters.Add("Interpolation", this->Interpolation);
   }
-  vtkPolyData* plane = vtkPolyData::GetData(outputs, 1);
-  if (vtkLacunaRequest::IsFirst(outputs))
+  this->Made = parameters.Get();
+  auto* plane = ports.GetOutput<vtkPolyData>(1);
+  if (ports.IsFirst())
   {
     Internals::MakeSquare(input, result.Plane, plane); // one is enough
   }
@@ -520,11 +452,15 @@ void vtkLacunaMirror::Make(vtkInformationVector** inputs, vtkInformationVector* 
     { static_cast<vtkDataObject*>(mirrored), static_cast<vtkDataObject*>(plane) })
   {
     Internals::AddFieldData(data, result);
-    vtkLacunaProvenance::Record(data, this, { input }, parameters.Get());
   }
   vtkLacunaMirrored::Mark(mirrored, origin, result.Plane.Normal);
-  vtkImageData* output = vtkImageData::GetData(outputs, 0);
-  output->ShallowCopy(mirrored);
+  ports.GetOutput<vtkImageData>()->ShallowCopy(mirrored);
+}
+
+//------------------------------------------------------------------------------
+std::string vtkLacunaMirror::Parameters(int) const
+{
+  return this->Made;
 }
 
 //------------------------------------------------------------------------------

@@ -38,21 +38,20 @@
 #define vtkLacunaMirror_h
 
 #include "vtkImageAlgorithm.h"
+#include "vtkLacunaAlgorithm.h"
 #include "vtkLacunaFiltersRadialBasisModule.h" // for export macro
-#include "vtkLacunaVersionCompat.h"            // for stops
 
 #include <memory>
 
 class vtkLacunaExecution;
-class vtkLacunaMeeting;
 
-class VTKLACUNAFILTERSRADIALBASIS_EXPORT vtkLacunaMirror : public vtkImageAlgorithm
+class VTKLACUNAFILTERSRADIALBASIS_EXPORT vtkLacunaMirror
+  : public vtkLacunaAlgorithmOf(vtkImageAlgorithm)
 {
 public:
   static vtkLacunaMirror* New();
   vtkTypeMacro(vtkLacunaMirror, vtkImageAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
-  vtkLacunaKeepTimeAtStops();
 
   enum PlaneMethodType
   {
@@ -98,9 +97,9 @@ protected:
   vtkLacunaMirror();
   ~vtkLacunaMirror() override;
   int FillOutputPortInformation(int port, vtkInformation* info) override;
-  int RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
-  int RequestUpdateExtent(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
-  int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
+  void Announce(const lacuna::Ports& ports) override;
+  void Make(const lacuna::Ports& ports, vtkLacunaExecution& execution) override;
+  std::string Parameters(int port) const override;
 
 private:
   vtkLacunaMirror(const vtkLacunaMirror&) = delete;
@@ -108,14 +107,11 @@ private:
 
   class Internals;
 
-  void Make(vtkInformationVector** inputs, vtkInformationVector* outputs, bool ranksMeet,
-    vtkLacunaExecution& execution);
-
   int PlaneMethod = BestSymmetry;
   double Origin[3] = { 0, 0, 0 };
   double Normal[3] = { 1, 0, 0 };
   int Interpolation = BSpline;
-  std::unique_ptr<vtkLacunaMeeting> Meeting;
   std::shared_ptr<const Internals> Kept; // what several ranks have found of a volume
+  std::string Made;                      // parameters of the last result
 };
 #endif

@@ -8,14 +8,10 @@
 #include "vtkImageData.h"
 #include "vtkImplicitFunction.h"
 #include "vtkInformation.h"
-#include "vtkInformationVector.h"
 #include "vtkLacunaDefectMarks.h"
 #include "vtkLacunaDepthMap.h"
-#include "vtkLacunaExecution.h"
 #include "vtkLacunaFilledMap.h"
 #include "vtkLacunaFunctionText.h"
-#include "vtkLacunaProvenance.h"
-#include "vtkLacunaRequest.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
@@ -36,15 +32,6 @@ using SDDP = vtkStreamingDemandDrivenPipeline;
 namespace
 {
 using lacuna::MapMask;
-
-// The object at the first connection of an optional port, or nullptr.
-template <class Type>
-Type* GetOptional(vtkInformationVector* port)
-{
-  return port->GetNumberOfInformationObjects() > 0
-    ? Type::SafeDownCast(port->GetInformationObject(0)->Get(vtkDataObject::DATA_OBJECT()))
-    : nullptr;
-}
 
 lacuna::MapGrid GetGrid(const int* extent, const double* spacing)
 {
@@ -245,51 +232,29 @@ vtkMTimeType vtkLacunaRBFHoleFiller::GetMTime()
 }
 
 //------------------------------------------------------------------------------
-int vtkLacunaRBFHoleFiller::RequestInformation(
-  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
+void vtkLacunaRBFHoleFiller::Announce(const lacuna::Ports& ports)
 {
-  return vtkLacunaExecution::RunInformation(this, outputs,
-    [&]
-    {
-      vtkInformation* in = inputs[0]->GetInformationObject(0);
-      vtkInformation* out = outputs->GetInformationObject(0);
-      out->Set(vtkAlgorithm::CAN_PRODUCE_SUB_EXTENT(), 1);
-      int whole[6];
-      double spacing[3] = { 1, 1, 1 };
-      in->Get(SDDP::WHOLE_EXTENT(), whole);
-      if (in->Has(vtkDataObject::SPACING()))
-      {
-        in->Get(vtkDataObject::SPACING(), spacing);
-      }
-      if (whole[1] >= whole[0] && whole[3] >= whole[2])
-      {
-        const lacuna::MapGrid grid =
-          lacuna::GetOutputGrid(GetGrid(whole, spacing), this->GetOptions());
-        whole[0] = grid.FirstColumn;
-        whole[1] = grid.FirstColumn + grid.Width - 1;
-        whole[2] = grid.FirstRow;
-        whole[3] = grid.FirstRow + grid.Height - 1;
-        std::copy(grid.Spacing.begin(), grid.Spacing.end(), spacing);
-      }
-      out->Set(SDDP::WHOLE_EXTENT(), whole, 6);
-      out->Set(vtkDataObject::SPACING(), spacing, 3);
-      vtkDataObject::SetPointDataActiveScalarInfo(out, VTK_DOUBLE, 1);
-    });
-}
-
-//------------------------------------------------------------------------------
-int vtkLacunaRBFHoleFiller::RequestUpdateExtent(
-  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
-{
-  // The fit depends on the whole surroundings of the defect, whatever piece is asked for.
-  for (int port = 0; port < this->GetNumberOfInputPorts(); ++port)
+  vtkInformation* in = ports.GetInputInformation();
+  vtkInformation* out = ports.GetOutputInformation();
+  int whole[6];
+  double spacing[3] = { 1, 1, 1 };
+  in->Get(SDDP::WHOLE_EXTENT(), whole);
+  if (in->Has(vtkDataObject::SPACING()))
   {
-    for (int i = 0; i < inputs[port]->GetNumberOfInformationObjects(); ++i)
-    {
-      vtkLacunaRequest::Whole(this, inputs[port]->GetInformationObject(i), outputs);
-    }
+    in->Get(vtkDataObject::SPACING(), spacing);
   }
-  return 1;
+  if (whole[1] >= whole[0] && whole[3] >= whole[2])
+  {
+    const lacuna::MapGrid grid = lacuna::GetOutputGrid(GetGrid(whole, spacing), this->GetOptions());
+    whole[0] = grid.FirstColumn;
+    whole[1] = grid.FirstColumn + grid.Width - 1;
+    whole[2] = grid.FirstRow;
+    whole[3] = grid.FirstRow + grid.Height - 1;
+    std::copy(grid.Spacing.begin(), grid.Spacing.end(), spacing);
+  }
+  out->Set(SDDP::WHOLE_EXTENT(), whole, 6);
+  out->Set(vtkDataObject::SPACING(), spacing, 3);
+  vtkDataObject::SetPointDataActiveScalarInfo(out, VTK_DOUBLE, 1);
 }
 
 //------------------------------------------------------------------------------
@@ -317,10 +282,10 @@ lacuna::HoleFillOptions vtkLacunaRBFHoleFiller::GetOptions() const
 
 //------------------------------------------------------------------------------
 void vtkLacunaRBFHoleFiller::MarkDefect(vtkLacunaExecution& execution, vtkImageData* map,
-  vtkInformationVector** inputs, lacuna::MarkedMap& marked, lacuna::ParameterText& where)
+  const lacuna::Ports& ports, lacuna::MarkedMap& marked, lacuna::ParameterText& where)
 {
-  auto* surface = GetOptional<vtkDataSet>(inputs[SurfacePort]);
-  auto* selection = GetOptional<vtkSelection>(inputs[SelectionPort]);
+  auto* surface = ports.GetInput<vtkDataSet>(SurfacePort);
+  auto* selection = ports.GetInput<vtkSelection>(SelectionPort);
   marked.Defect.assign(marked.Grid.GetSize(), 0);
   where.Add("DefectRegion", vtkLacunaFunctionText::Describe(this->DefectRegion))
     .Add("DefectArray", this->DefectArray);
@@ -360,104 +325,103 @@ void vtkLacunaRBFHoleFiller::MarkDefect(vtkLacunaExecution& execution, vtkImageD
 }
 
 //------------------------------------------------------------------------------
-int vtkLacunaRBFHoleFiller::RequestData(
-  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputVector)
+// The fit depends on the whole surroundings of the defect, whatever part is asked for.
+void vtkLacunaRBFHoleFiller::Make(const lacuna::Ports& ports, vtkLacunaExecution& execution)
 {
-  vtkImageData* map = vtkImageData::GetData(inputs[0]);
-  vtkImageData* output = vtkImageData::GetData(outputVector);
-  const bool isWanted = vtkLacunaRequest::IsWanted(outputVector); // not an empty part
-  const auto body = [&](vtkLacunaExecution& execution)
+  auto* map = ports.GetInput<vtkImageData>();
+  const vtkLacunaDepthMap contract(map);
+  int whole[6];
+  ports.GetInputInformation()->Get(SDDP::WHOLE_EXTENT(), whole);
+  if (!std::equal(whole, whole + 6, map->GetExtent()))
   {
-    if (!map || map->GetNumberOfPoints() == 0)
-    {
-      return; // empty in, empty out
-    }
-    const vtkLacunaDepthMap contract(map);
-    int whole[6];
-    inputs[0]->GetInformationObject(0)->Get(SDDP::WHOLE_EXTENT(), whole);
-    if (!std::equal(whole, whole + 6, map->GetExtent()))
-    {
-      throw std::runtime_error("only a part of the depth map has arrived, and the fit needs the "
-                               "whole; the filter before this one has divided it");
-    }
-    if (contract.IsPerspective())
-    {
-      throw std::runtime_error("this is a perspective depth map; holes are filled in parallel maps "
-                               "only, such as those of B-Spline Iso Ray Caster");
-    }
-    const lacuna::HoleFillOptions options = this->GetOptions();
-    lacuna::HoleFillInput input;
-    input.Grid = GetGrid(map->GetExtent(), map->GetSpacing());
-    const vtkIdType wrong = ReadDepth(map, contract, input, "the depth map");
-    if (wrong > 0)
-    {
-      vtkWarningMacro(<< wrong << " pixels of the depth map are flagged valid but have no finite "
-                      << "depth; they are taken as pixels without depth");
-    }
-    execution.SetStage(0, 0.1);
-    lacuna::ParameterText parameters;
-    this->MarkDefect(execution, map, inputs, input, parameters);
-    auto* control = GetOptional<vtkDataSet>(inputs[ControlPointsPort]);
-    auto* prior = GetOptional<vtkImageData>(inputs[PriorSurfacePort]);
-    const lacuna::Matrix4 toMap = GetWorldToMap(contract, input.Grid);
-    input.ControlPoints = GetControlPoints(control, this->ControlDepthArray, toMap);
-    input.Prior = GetSheet(prior, toMap);
+    throw std::runtime_error("only a part of the depth map has arrived, and the fit needs the "
+                             "whole; the filter before this one has divided it");
+  }
+  if (contract.IsPerspective())
+  {
+    throw std::runtime_error("this is a perspective depth map; holes are filled in parallel maps "
+                             "only, such as those of B-Spline Iso Ray Caster");
+  }
+  const lacuna::HoleFillOptions options = this->GetOptions();
+  lacuna::HoleFillInput input;
+  input.Grid = GetGrid(map->GetExtent(), map->GetSpacing());
+  const vtkIdType wrong = ReadDepth(map, contract, input, "the depth map");
+  if (wrong > 0)
+  {
+    vtkWarningMacro(<< wrong << " pixels of the depth map are flagged valid but have no finite "
+                    << "depth; they are taken as pixels without depth");
+  }
+  execution.SetStage(0, 0.1);
+  lacuna::ParameterText parameters;
+  this->MarkDefect(execution, map, ports, input, parameters);
+  auto* control = ports.GetInput<vtkDataSet>(ControlPointsPort);
+  auto* prior = ports.GetInput<vtkImageData>(PriorSurfacePort);
+  const lacuna::Matrix4 toMap = GetWorldToMap(contract, input.Grid);
+  input.ControlPoints = GetControlPoints(control, this->ControlDepthArray, toMap);
+  input.Prior = GetSheet(prior, toMap);
 
-    const auto marked = std::count(input.Defect.begin(), input.Defect.end(), 1);
-    if (marked == 0)
-    {
-      const std::string miss = this->DefectRegion
-        ? vtkLacunaDefectMarks::DescribeMiss(contract, input, this->DefectRegion)
-        : std::string();
-      vtkWarningMacro(<< "the defect is empty, so the map is passed on as it is: "
-                      << (miss.empty()
-                             ? "no pixel is marked by DefectRegion, DefectArray or the selection, "
-                               "or (without them) the main surface of the map encloses no hole"
-                             : miss));
-    }
-    const lacuna::HoleFillResult result = this->Filler->Fill(execution, input, options);
-    for (const std::string& warning : result.Warnings)
-    {
-      vtkWarningMacro(<< warning);
-    }
-    vtkNew<vtkImageData> filled;
-    vtkLacunaFilledMap::Make(map, contract, result, options.Kernel, marked > 0, filled);
+  const auto marked = std::count(input.Defect.begin(), input.Defect.end(), 1);
+  if (marked == 0)
+  {
+    const std::string miss = this->DefectRegion
+      ? vtkLacunaDefectMarks::DescribeMiss(contract, input, this->DefectRegion)
+      : std::string();
+    vtkWarningMacro(<< "the defect is empty, so the map is passed on as it is: "
+                    << (miss.empty()
+                           ? "no pixel is marked by DefectRegion, DefectArray or the selection, "
+                             "or (without them) the main surface of the map encloses no hole"
+                           : miss));
+  }
+  const lacuna::HoleFillResult result = this->Filler->Fill(execution, input, options);
+  for (const std::string& warning : result.Warnings)
+  {
+    vtkWarningMacro(<< warning);
+  }
+  vtkNew<vtkImageData> filled;
+  vtkLacunaFilledMap::Make(map, contract, result, options.Kernel, marked > 0, filled);
 
-    parameters.Add("Kernel", this->Kernel)
-      .Add("KernelLength", this->KernelLength)
-      .Add("Trend", this->Trend)
-      .Add("SupportArray", this->SupportArray)
-      .Add("SupportMargin", this->SupportMargin)
-      .Add("SupportStepMargin", this->SupportStepMargin)
-      .Add("NodeSpacing", this->NodeSpacing)
-      .Add("Smoothing", this->Smoothing)
-      .Add("CutoffWavelength", this->CutoffWavelength)
-      .Add("ControlDepthArray", this->ControlDepthArray)
-      .Add("OutputMargin", this->OutputMargin)
-      .Add("OutputSpacing", this->OutputSpacing)
-      .Add("Accuracy", this->Accuracy)
-      .Add("Solver", this->Solver);
-    std::vector<double> coordinates;
-    for (const lacuna::Vec3& p : input.ControlPoints)
-    {
-      coordinates.insert(coordinates.end(), { p[0], p[1], p[2] });
-    }
-    if (!coordinates.empty())
-    {
-      parameters.Add("ControlPointsInMap", coordinates);
-    }
-    std::vector<vtkDataObject*> sources{ map };
-    if (prior)
-    {
-      sources.push_back(prior);
-    }
-    vtkLacunaProvenance::Record(filled, this, sources, parameters.Get());
-    output->ShallowCopy(filled);
-    int piece[6];
-    outputVector->GetInformationObject(0)->Get(SDDP::UPDATE_EXTENT(), piece);
-    output->Crop(piece);
-  };
-  return vtkLacunaExecution::RunAgreed(this, outputVector, isWanted, body);
+  parameters.Add("Kernel", this->Kernel)
+    .Add("KernelLength", this->KernelLength)
+    .Add("Trend", this->Trend)
+    .Add("SupportArray", this->SupportArray)
+    .Add("SupportMargin", this->SupportMargin)
+    .Add("SupportStepMargin", this->SupportStepMargin)
+    .Add("NodeSpacing", this->NodeSpacing)
+    .Add("Smoothing", this->Smoothing)
+    .Add("CutoffWavelength", this->CutoffWavelength)
+    .Add("ControlDepthArray", this->ControlDepthArray)
+    .Add("OutputMargin", this->OutputMargin)
+    .Add("OutputSpacing", this->OutputSpacing)
+    .Add("Accuracy", this->Accuracy)
+    .Add("Solver", this->Solver);
+  std::vector<double> coordinates;
+  for (const lacuna::Vec3& p : input.ControlPoints)
+  {
+    coordinates.insert(coordinates.end(), { p[0], p[1], p[2] });
+  }
+  if (!coordinates.empty())
+  {
+    parameters.Add("ControlPointsInMap", coordinates);
+  }
+  this->Made = parameters.Get();
+  ports.GetOutput<vtkImageData>()->ShallowCopy(filled);
+}
+
+//------------------------------------------------------------------------------
+std::vector<vtkDataObject*> vtkLacunaRBFHoleFiller::GetOrigins(const lacuna::Ports& ports) const
+{
+  std::vector<vtkDataObject*> origins{ ports.GetInput<vtkDataObject>() };
+  if (auto* prior = ports.GetInput<vtkImageData>(PriorSurfacePort))
+  {
+    origins.push_back(prior);
+  }
+  return origins;
+}
+
+//------------------------------------------------------------------------------
+std::string vtkLacunaRBFHoleFiller::Parameters(int) const
+{
+  return this->Made;
 }
 
 //------------------------------------------------------------------------------

@@ -45,8 +45,8 @@
 #define vtkLacunaRBFHoleFiller_h
 
 #include "vtkImageAlgorithm.h"
+#include "vtkLacunaAlgorithm.h"
 #include "vtkLacunaFiltersRadialBasisModule.h" // for export macro
-#include "vtkLacunaVersionCompat.h"            // for stops
 #include "vtkSmartPointer.h"                   // for ivar
 
 #include <memory> // for ivar
@@ -62,13 +62,13 @@ class ParameterText;
 struct MarkedMap;
 }
 
-class VTKLACUNAFILTERSRADIALBASIS_EXPORT vtkLacunaRBFHoleFiller : public vtkImageAlgorithm
+class VTKLACUNAFILTERSRADIALBASIS_EXPORT vtkLacunaRBFHoleFiller
+  : public vtkLacunaAlgorithmOf(vtkImageAlgorithm)
 {
 public:
   static vtkLacunaRBFHoleFiller* New();
   vtkTypeMacro(vtkLacunaRBFHoleFiller, vtkImageAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
-  vtkLacunaKeepTimeAtStops();
 
   /// Input ports; all but the first are optional.
   enum InputPort
@@ -257,9 +257,10 @@ protected:
   vtkLacunaRBFHoleFiller();
   ~vtkLacunaRBFHoleFiller() override;
   int FillInputPortInformation(int port, vtkInformation* info) override;
-  int RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
-  int RequestUpdateExtent(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
-  int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
+  void Announce(const lacuna::Ports& ports) override;
+  void Make(const lacuna::Ports& ports, vtkLacunaExecution& execution) override;
+  std::string Parameters(int port) const override;
+  std::vector<vtkDataObject*> GetOrigins(const lacuna::Ports& ports) const override;
 
 private:
   vtkLacunaRBFHoleFiller(const vtkLacunaRBFHoleFiller&) = delete;
@@ -269,7 +270,7 @@ private:
   /// Throws std::runtime_error when a choice is none of those there are.
   lacuna::HoleFillOptions GetOptions() const;
   /// Adds to where what says which pixels are marked, and how.
-  void MarkDefect(vtkLacunaExecution& execution, vtkImageData* map, vtkInformationVector** inputs,
+  void MarkDefect(vtkLacunaExecution& execution, vtkImageData* map, const lacuna::Ports& ports,
     lacuna::MarkedMap& marked, lacuna::ParameterText& where);
 
   int Kernel = ThinPlate;
@@ -289,5 +290,6 @@ private:
   double Accuracy = 1e-4;
   int Solver = Auto;
   std::unique_ptr<lacuna::HoleFiller> Filler; // keeps equations while control points move
+  std::string Made;                           ///< parameters of the last map
 };
 #endif

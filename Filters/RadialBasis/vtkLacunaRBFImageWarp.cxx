@@ -9,16 +9,9 @@
 #include "vtkExtentTranslator.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
-#include "vtkInformationVector.h"
-#include "vtkLacunaCoordinates.h"
 #include "vtkLacunaDepthMap.h"
-#include "vtkLacunaExecution.h"
 #include "vtkLacunaFieldData.h"
 #include "vtkLacunaLandmarkWarp.h"
-#include "vtkLacunaMeeting.h"
-#include "vtkLacunaProvenance.h"
-#include "vtkLacunaRanks.h"
-#include "vtkLacunaRequest.h"
 #include "vtkLacunaVolumeDirection.h"
 #include "vtkLacunaWarpedPart.h"
 #include "vtkNew.h"
@@ -216,8 +209,9 @@ Counts Warp(vtkLacunaExecution& execution, Mapping& mapping, const Box& made, Wa
 
 //------------------------------------------------------------------------------
 vtkLacunaRBFImageWarp::vtkLacunaRBFImageWarp()
-  : Meeting(std::make_unique<vtkLacunaMeeting>())
 {
+  this->Sharing = lacuna::Share::Together;
+  this->KeepsPlace = false; // the targets may be anyone's
   this->SetNumberOfInputPorts(3);
 }
 
@@ -231,76 +225,21 @@ int vtkLacunaRBFImageWarp::FillInputPortInformation(int port, vtkInformation* in
 }
 
 //------------------------------------------------------------------------------
-int vtkLacunaRBFImageWarp::RequestInformation(
-  vtkInformation*, vtkInformationVector**, vtkInformationVector* outputs)
+void vtkLacunaRBFImageWarp::Announce(const lacuna::Ports& ports)
 {
-  return vtkLacunaExecution::RunInformation(this, outputs,
-    [&]
-    {
-      // Each rank makes the extent that VTK turns its piece into.
-      outputs->GetInformationObject(0)->Set(vtkAlgorithm::CAN_PRODUCE_SUB_EXTENT(), 1);
-    });
+  ports.GetOutputInformation()->Set(vtkAlgorithm::CAN_PRODUCE_SUB_EXTENT(), 1); // each its part
 }
 
 //------------------------------------------------------------------------------
-int vtkLacunaRBFImageWarp::RequestUpdateExtent(
-  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
+// Any voxel may show any place, and each depends on all landmarks. All ranks say together what is folded.
+void vtkLacunaRBFImageWarp::Make(const lacuna::Ports& ports, vtkLacunaExecution& execution)
 {
-  // Any voxel may show any place, and each depends on all landmarks. All ranks say together what is
-  // folded.
-  this->Meeting->AskForWhole(this, inputs, vtkLacunaRanks().GetNumber() > 1 ? nullptr : outputs);
-  return 1;
-}
-
-//------------------------------------------------------------------------------
-int vtkLacunaRBFImageWarp::RequestData(
-  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
-{
-  const vtkLacunaRanks ranks;
-  if (ranks.GetNumber() == 1)
-  {
-    this->Meeting->Forget();
-    if (!vtkLacunaRequest::IsWanted(outputs))
-    {
-      return 1;
-    }
-  }
-  return vtkLacunaExecution::RunTogether(this, outputs,
-    [&](vtkLacunaExecution& execution)
-    {
-      vtkImageData* image = vtkImageData::GetData(inputs[0]);
-      const bool hasData = image && image->GetNumberOfPoints() > 0;
-      const auto make = [&](bool ranksMeet)
-      {
-        if (hasData) // empty in, empty out
-        {
-          this->Make(inputs, outputs, ranksMeet, execution);
-        }
-      };
-      std::vector<double> times;
-      for (int port = 0; port < 3; ++port)
-      {
-        const std::vector<double> more =
-          vtkLacunaRequest::GetTimes(this, inputs[port]->GetInformationObject(0));
-        times.insert(times.end(), more.begin(), more.end());
-      }
-      if (!this->Meeting->Hold(this, times, hasData, ranks, [&] { make(true); }))
-      {
-        make(false);
-      }
-    });
-}
-
-//------------------------------------------------------------------------------
-void vtkLacunaRBFImageWarp::Make(vtkInformationVector** inputs, vtkInformationVector* outputs,
-  bool ranksMeet, vtkLacunaExecution& execution)
-{
-  const vtkLacunaRanks ranks;
-  vtkImageData* image = vtkImageData::GetData(inputs[0]);
-  vtkImageData* output = vtkImageData::GetData(outputs);
-  const bool wanted = vtkLacunaRequest::IsWanted(outputs);
-  vtkDataSet* landmarks = vtkDataSet::GetData(inputs[1]);
-  vtkDataSet* targets = vtkDataSet::GetData(inputs[2]);
+  const lacuna::Ranks& ranks = ports.Ranks;
+  auto* image = ports.GetInput<vtkImageData>();
+  auto* landmarks = ports.GetInput<vtkDataSet>(1);
+  auto* targets = ports.GetInput<vtkDataSet>(2);
+  auto* output = ports.GetOutput<vtkImageData>();
+  const bool wanted = ports.IsAsked();
   vtkDataArray* scalars = nullptr;
   std::optional<vtkLacunaVoxelSpace> found;
   std::vector<std::array<double, 3>> from;
@@ -344,15 +283,7 @@ void vtkLacunaRBFImageWarp::Make(vtkInformationVector** inputs, vtkInformationVe
     from = found->GetPoints(landmarks);
     to = found->GetPoints(targets);
   };
-  // What is wrong on one rank only may not keep the others waiting.
-  if (ranksMeet)
-  {
-    ranks.Together(prepare);
-  }
-  else
-  {
-    prepare();
-  }
+  ranks.Together(prepare); // what is wrong on one rank only may not keep the others waiting
   const vtkLacunaVoxelSpace& space = *found;
   lacuna::RadialBasisOptions options;
   options.Kernel = static_cast<lacuna::RadialKernel>(this->Kernel);
@@ -369,12 +300,12 @@ void vtkLacunaRBFImageWarp::Make(vtkInformationVector** inputs, vtkInformationVe
       key.insert(key.end(), x.begin(), x.end());
     }
   }
-  const bool known = !ranksMeet || ranks.AllFine(key == this->FoldsOf);
+  const bool known = ports.HaveMet || ranks.AllFine(key == this->FoldsOf);
   if (known && !wanted)
   {
     return;
   }
-  vtkInformation* info = outputs->GetInformationObject(0);
+  vtkInformation* info = ports.GetOutputInformation();
   Box made{ 0, -1, 0, -1, 0, -1 };
   if (wanted)
   {
@@ -480,14 +411,18 @@ void vtkLacunaRBFImageWarp::Make(vtkInformationVector** inputs, vtkInformationVe
   vtkLacunaFieldData::Set(output, "NodeCount", { static_cast<double>(report.NodeCount) }, 1);
   vtkLacunaFieldData::Set(output, "Residual", { report.Residual }, 1);
   vtkLacunaFieldData::Set(output, "FoldedFraction", { this->FoldedFraction }, 1);
-  lacuna::ParameterText parameters;
-  parameters.Add("Kernel", this->Kernel)
+}
+
+//------------------------------------------------------------------------------
+std::string vtkLacunaRBFImageWarp::Parameters(int) const
+{
+  return lacuna::ParameterText()
+    .Add("Kernel", this->Kernel)
     .Add("Smoothing", this->Smoothing)
     .Add("Interpolation", this->Interpolation)
     .Add("OutsideValue", this->OutsideValue)
-    .Add("Accuracy", this->Accuracy);
-  vtkLacunaProvenance::Record(output, this, { image, landmarks, targets }, parameters.Get());
-  vtkLacunaCoordinates::Clear(output); // the targets may be anyone's
+    .Add("Accuracy", this->Accuracy)
+    .Get();
 }
 
 //------------------------------------------------------------------------------

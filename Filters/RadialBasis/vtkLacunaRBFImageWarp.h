@@ -38,23 +38,22 @@
 #define vtkLacunaRBFImageWarp_h
 
 #include "vtkImageAlgorithm.h"
+#include "vtkLacunaAlgorithm.h"
 #include "vtkLacunaFiltersRadialBasisModule.h" // for export macro
-#include "vtkLacunaVersionCompat.h"            // for stops
 
 #include <memory>
 #include <vector>
 
 class vtkAlgorithmOutput;
 class vtkLacunaExecution;
-class vtkLacunaMeeting;
 
-class VTKLACUNAFILTERSRADIALBASIS_EXPORT vtkLacunaRBFImageWarp : public vtkImageAlgorithm
+class VTKLACUNAFILTERSRADIALBASIS_EXPORT vtkLacunaRBFImageWarp
+  : public vtkLacunaAlgorithmOf(vtkImageAlgorithm)
 {
 public:
   static vtkLacunaRBFImageWarp* New();
   vtkTypeMacro(vtkLacunaRBFImageWarp, vtkImageAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
-  vtkLacunaKeepTimeAtStops();
 
   enum KernelType
   {
@@ -113,9 +112,9 @@ protected:
   vtkLacunaRBFImageWarp();
   ~vtkLacunaRBFImageWarp() override;
   int FillInputPortInformation(int port, vtkInformation* info) override;
-  int RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
-  int RequestUpdateExtent(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
-  int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
+  void Announce(const lacuna::Ports& ports) override;
+  void Make(const lacuna::Ports& ports, vtkLacunaExecution& execution) override;
+  std::string Parameters(int port) const override;
 
 private:
   vtkLacunaRBFImageWarp(const vtkLacunaRBFImageWarp&) = delete;
@@ -127,10 +126,6 @@ private:
   double OutsideValue = 0;
   double Accuracy = 0.01;
 
-  void Make(vtkInformationVector** inputs, vtkInformationVector* outputs, bool ranksMeet,
-    vtkLacunaExecution& execution);
-
-  std::unique_ptr<vtkLacunaMeeting> Meeting;
   // Of the whole image, whatever part of it is made, and what that was found for
   double FoldedFraction = 0;
   double FoldedInBox = 0;

@@ -12,14 +12,9 @@
 #include "vtkFieldData.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
-#include "vtkInformationVector.h"
 #include "vtkLacunaArrayName.h"
 #include "vtkLacunaArrays.h"
-#include "vtkLacunaExecution.h"
 #include "vtkLacunaFieldData.h"
-#include "vtkLacunaInputs.h"
-#include "vtkLacunaProvenance.h"
-#include "vtkLacunaRequest.h"
 #include "vtkLacunaVolumeDirection.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
@@ -248,149 +243,125 @@ int vtkLacunaRBFInterpolator::FillInputPortInformation(int, vtkInformation* info
 }
 
 //------------------------------------------------------------------------------
-int vtkLacunaRBFInterpolator::RequestUpdateExtent(
-  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
+void vtkLacunaRBFInterpolator::Announce(const lacuna::Ports& ports)
 {
-  // Each value of the image depends on all points.
-  vtkLacunaRequest::Whole(this, inputs[0]->GetInformationObject(0), outputs);
-  return 1;
+  this->UpdateInput(
+    ports); // the grid follows from the points, and is asked for before any data are
+  auto* points = ports.GetInput<vtkDataSet>();
+  vtkInformation* info = ports.GetOutputInformation();
+  int extent[6] = { 0, -1, 0, -1, 0, -1 };
+  vtkLacunaVolumeDirection::AnnounceAlongAxes(info);
+  if (points && points->GetNumberOfPoints() > 0)
+  {
+    const OutputGrid to(points, this->OutputSpacing, this->OutputBounds);
+    for (int c = 0; c < 3; ++c)
+    {
+      extent[2 * c + 1] = static_cast<int>(to.Grid.Size[c]) - 1;
+    }
+    info->Set(vtkDataObject::ORIGIN(), to.Grid.Origin.data(), 3);
+    info->Set(vtkDataObject::SPACING(), to.Grid.Spacing.data(), 3);
+    vtkDataObject::SetPointDataActiveScalarInfo(info, VTK_DOUBLE, -1);
+  }
+  info->Set(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), extent, 6);
 }
 
 //------------------------------------------------------------------------------
-int vtkLacunaRBFInterpolator::RequestInformation(
-  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
+void vtkLacunaRBFInterpolator::Make(const lacuna::Ports& ports, vtkLacunaExecution& execution)
 {
-  return vtkLacunaExecution::RunInformation(this, outputs,
-    [&]
+  auto* points = ports.GetInput<vtkDataSet>(); // each value of the image depends on all of them
+  auto* output = ports.GetOutput<vtkImageData>();
+  output->GetFieldData()->Initialize(); // VTK passes the points' own
+  vtkLacunaVolumeDirection::Check(points);
+  if (this->Kernel < ThinPlate || this->Kernel > Multiquadric)
+  {
+    throw std::runtime_error("Kernel is " + std::to_string(this->Kernel) +
+      "; it must be 0 (ThinPlate), 1 (Linear), 2 (Triharmonic), 3 (Cubic), 4 (Gaussian) or 5 "
+      "(Multiquadric)");
+  }
+  if (this->Solver < Auto || this->Solver > Fast)
+  {
+    throw std::runtime_error("Solver is " + std::to_string(this->Solver) +
+      "; it must be 0 (Auto), 1 (Direct) or 2 (Fast)");
+  }
+  if (!(this->CenterTolerance >= 0) || !std::isfinite(this->CenterTolerance))
+  {
+    throw std::runtime_error("CenterTolerance must be a finite number >= 0");
+  }
+  if (this->CenterTolerance > 0 && !this->ErrorArray.empty())
+  {
+    throw std::runtime_error("ErrorArray cannot be used together with CenterTolerance, which "
+                             "holds for all values alike: empty one, or set the other to 0");
+  }
+  const OutputGrid to(points, this->OutputSpacing, this->OutputBounds);
+  vtkDataArray* array = FindArray(points, this->ScalarArray, "ScalarArray");
+  lacuna::RadialBasisOptions options;
+  options.Kernel = static_cast<lacuna::RadialKernel>(this->Kernel);
+  options.Shape = this->KernelLength;
+  options.Smoothing = this->Smoothing;
+  options.Accuracy = this->Accuracy;
+  options.Solver = static_cast<lacuna::RadialSolver>(this->Solver);
+  if (!this->ErrorArray.empty())
+  {
+    vtkDataArray* errors = FindArray(points, this->ErrorArray, "ErrorArray");
+    for (vtkIdType i = 0; i < errors->GetNumberOfTuples(); ++i)
     {
-      // The grid follows from the points, and is asked for before any data are.
-      vtkLacunaRequest::Whole(this, inputs[0]->GetInformationObject(0), nullptr);
-      this->GetInputAlgorithm(0, 0)->Update(this->GetInputConnection(0, 0)->GetIndex());
-      vtkLacunaInputs::Check(this);
-      vtkDataSet* points = vtkDataSet::GetData(inputs[0]);
-      vtkInformation* info = outputs->GetInformationObject(0);
-      int extent[6] = { 0, -1, 0, -1, 0, -1 };
-      vtkLacunaVolumeDirection::AnnounceAlongAxes(info);
-      if (points && points->GetNumberOfPoints() > 0)
-      {
-        const OutputGrid to(points, this->OutputSpacing, this->OutputBounds);
-        for (int c = 0; c < 3; ++c)
-        {
-          extent[2 * c + 1] = static_cast<int>(to.Grid.Size[c]) - 1;
-        }
-        info->Set(vtkDataObject::ORIGIN(), to.Grid.Origin.data(), 3);
-        info->Set(vtkDataObject::SPACING(), to.Grid.Spacing.data(), 3);
-        vtkDataObject::SetPointDataActiveScalarInfo(info, VTK_DOUBLE, -1);
-      }
-      info->Set(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), extent, 6);
-      info->Set(vtkAlgorithm::CAN_PRODUCE_SUB_EXTENT(), 1);
-    });
+      options.Errors.push_back(errors->GetComponent(i, 0));
+    }
+  }
+  int whole[6];
+  int piece[6]; // of ranks, which share the evaluation: each fits for itself
+  vtkInformation* info = ports.GetOutputInformation();
+  info->Get(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), whole);
+  info->Get(vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT(), piece);
+  for (std::size_t c = 0; c < 3; ++c)
+  {
+    if (whole[2 * c + 1] + 1 != static_cast<int>(to.Grid.Size[c]))
+    {
+      throw std::runtime_error("the points have changed since the grid was announced (points "
+                               "that change with time?); set OutputBounds and OutputSpacing, "
+                               "so that it does not depend on them");
+    }
+    piece[2 * c] = std::max(piece[2 * c], 0);
+    piece[2 * c + 1] = std::min(piece[2 * c + 1], static_cast<int>(to.Grid.Size[c]) - 1);
+  }
+  to.RequireMemory(piece, array->GetNumberOfComponents());
+  output->SetExtent(piece);
+  output->SetOrigin(to.Grid.Origin.data());
+  output->SetSpacing(to.Grid.Spacing.data());
+  vtkNew<vtkDoubleArray> image;
+  image->SetName(array->GetName() ? array->GetName() : "Values");
+  switch (to.Axes.size())
+  {
+    case 3:
+      Interpolate<3>(
+        execution, points, array, to, piece, options, this->CenterTolerance, image, output);
+      break;
+    case 2:
+      Interpolate<2>(
+        execution, points, array, to, piece, options, this->CenterTolerance, image, output);
+      break;
+    default:
+      throw std::runtime_error("all points lie at one place or on one line along an axis: that "
+                               "does not determine a function in two or three dimensions");
+  }
+  output->GetPointData()->SetScalars(image);
 }
 
 //------------------------------------------------------------------------------
-int vtkLacunaRBFInterpolator::RequestData(
-  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
+std::string vtkLacunaRBFInterpolator::Parameters(int) const
 {
-  const bool isWanted = vtkLacunaRequest::IsWanted(outputs); // not an empty part
-  return vtkLacunaExecution::RunAgreed(this, outputs, isWanted,
-    [&](vtkLacunaExecution& execution)
-    {
-      vtkDataSet* points = vtkDataSet::GetData(inputs[0]);
-      vtkImageData* output = vtkImageData::GetData(outputs);
-      output->GetFieldData()->Initialize(); // VTK passes the points' own
-      if (!points || points->GetNumberOfPoints() == 0)
-      {
-        output->Initialize(); // empty in, empty out
-        return;
-      }
-      vtkLacunaVolumeDirection::Check(points);
-      if (this->Kernel < ThinPlate || this->Kernel > Multiquadric)
-      {
-        throw std::runtime_error("Kernel is " + std::to_string(this->Kernel) +
-          "; it must be 0 (ThinPlate), 1 (Linear), 2 (Triharmonic), 3 (Cubic), 4 (Gaussian) or 5 "
-          "(Multiquadric)");
-      }
-      if (this->Solver < Auto || this->Solver > Fast)
-      {
-        throw std::runtime_error("Solver is " + std::to_string(this->Solver) +
-          "; it must be 0 (Auto), 1 (Direct) or 2 (Fast)");
-      }
-      if (!(this->CenterTolerance >= 0) || !std::isfinite(this->CenterTolerance))
-      {
-        throw std::runtime_error("CenterTolerance must be a finite number >= 0");
-      }
-      if (this->CenterTolerance > 0 && !this->ErrorArray.empty())
-      {
-        throw std::runtime_error("ErrorArray cannot be used together with CenterTolerance, which "
-                                 "holds for all values alike: empty one, or set the other to 0");
-      }
-      const OutputGrid to(points, this->OutputSpacing, this->OutputBounds);
-      vtkDataArray* array = FindArray(points, this->ScalarArray, "ScalarArray");
-      lacuna::RadialBasisOptions options;
-      options.Kernel = static_cast<lacuna::RadialKernel>(this->Kernel);
-      options.Shape = this->KernelLength;
-      options.Smoothing = this->Smoothing;
-      options.Accuracy = this->Accuracy;
-      options.Solver = static_cast<lacuna::RadialSolver>(this->Solver);
-      if (!this->ErrorArray.empty())
-      {
-        vtkDataArray* errors = FindArray(points, this->ErrorArray, "ErrorArray");
-        for (vtkIdType i = 0; i < errors->GetNumberOfTuples(); ++i)
-        {
-          options.Errors.push_back(errors->GetComponent(i, 0));
-        }
-      }
-      int whole[6];
-      int piece[6]; // of ranks, which share the evaluation: each fits for itself
-      vtkInformation* info = outputs->GetInformationObject(0);
-      info->Get(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), whole);
-      info->Get(vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT(), piece);
-      for (std::size_t c = 0; c < 3; ++c)
-      {
-        if (whole[2 * c + 1] + 1 != static_cast<int>(to.Grid.Size[c]))
-        {
-          throw vtkLacunaGridChanged("the points have changed since the grid was announced (points "
-                                     "that change with time?); set OutputBounds and OutputSpacing, "
-                                     "so that it does not depend on them");
-        }
-        piece[2 * c] = std::max(piece[2 * c], 0);
-        piece[2 * c + 1] = std::min(piece[2 * c + 1], static_cast<int>(to.Grid.Size[c]) - 1);
-      }
-      to.RequireMemory(piece, array->GetNumberOfComponents());
-      output->SetExtent(piece);
-      output->SetOrigin(to.Grid.Origin.data());
-      output->SetSpacing(to.Grid.Spacing.data());
-      vtkNew<vtkDoubleArray> image;
-      image->SetName(array->GetName() ? array->GetName() : "Values");
-      switch (to.Axes.size())
-      {
-        case 3:
-          Interpolate<3>(
-            execution, points, array, to, piece, options, this->CenterTolerance, image, output);
-          break;
-        case 2:
-          Interpolate<2>(
-            execution, points, array, to, piece, options, this->CenterTolerance, image, output);
-          break;
-        default:
-          throw std::runtime_error("all points lie at one place or on one line along an axis: that "
-                                   "does not determine a function in two or three dimensions");
-      }
-      output->GetPointData()->SetScalars(image);
-
-      lacuna::ParameterText parameters;
-      parameters.Add("ScalarArray", this->ScalarArray)
-        .Add("Kernel", this->Kernel)
-        .Add("KernelLength", this->KernelLength)
-        .Add("Smoothing", this->Smoothing)
-        .Add("ErrorArray", this->ErrorArray)
-        .Add("Accuracy", this->Accuracy)
-        .Add("Solver", this->Solver)
-        .Add("CenterTolerance", this->CenterTolerance)
-        .Add("OutputSpacing", this->OutputSpacing)
-        .Add("OutputBounds", this->OutputBounds);
-      vtkLacunaProvenance::Record(output, this, { points }, parameters.Get());
-    });
+  return lacuna::ParameterText()
+    .Add("ScalarArray", this->ScalarArray)
+    .Add("Kernel", this->Kernel)
+    .Add("KernelLength", this->KernelLength)
+    .Add("Smoothing", this->Smoothing)
+    .Add("ErrorArray", this->ErrorArray)
+    .Add("Accuracy", this->Accuracy)
+    .Add("Solver", this->Solver)
+    .Add("CenterTolerance", this->CenterTolerance)
+    .Add("OutputSpacing", this->OutputSpacing)
+    .Add("OutputBounds", this->OutputBounds)
+    .Get();
 }
 
 //------------------------------------------------------------------------------

@@ -34,18 +34,18 @@
 #define vtkLacunaRBFInterpolator_h
 
 #include "vtkImageAlgorithm.h"
+#include "vtkLacunaAlgorithm.h"
 #include "vtkLacunaFiltersRadialBasisModule.h" // for export macro
-#include "vtkLacunaVersionCompat.h"            // for stops
 
 #include <string> // for ivars
 
-class VTKLACUNAFILTERSRADIALBASIS_EXPORT vtkLacunaRBFInterpolator : public vtkImageAlgorithm
+class VTKLACUNAFILTERSRADIALBASIS_EXPORT vtkLacunaRBFInterpolator
+  : public vtkLacunaAlgorithmOf(vtkImageAlgorithm)
 {
 public:
   static vtkLacunaRBFInterpolator* New();
   vtkTypeMacro(vtkLacunaRBFInterpolator, vtkImageAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
-  vtkLacunaKeepTimeAtStops();
 
   enum KernelType
   {
@@ -145,9 +145,9 @@ protected:
   vtkLacunaRBFInterpolator() = default;
   ~vtkLacunaRBFInterpolator() override = default;
   int FillInputPortInformation(int port, vtkInformation* info) override;
-  int RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
-  int RequestUpdateExtent(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
-  int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
+  void Announce(const lacuna::Ports& ports) override;
+  void Make(const lacuna::Ports& ports, vtkLacunaExecution& execution) override;
+  std::string Parameters(int port) const override;
 
 private:
   vtkLacunaRBFInterpolator(const vtkLacunaRBFInterpolator&) = delete;

@@ -14,14 +14,9 @@
 #include "vtkImageData.h"
 #include "vtkImplicitFunction.h"
 #include "vtkInformation.h"
-#include "vtkInformationVector.h"
 #include "vtkLacunaArrayName.h"
 #include "vtkLacunaArrays.h"
-#include "vtkLacunaExecution.h"
 #include "vtkLacunaFieldData.h"
-#include "vtkLacunaProvenance.h"
-#include "vtkLacunaRanks.h"
-#include "vtkLacunaRequest.h"
 #include "vtkLacunaSurfacePoints.h"
 #include "vtkLacunaSurfacePrior.h"
 #include "vtkLacunaVolumeDirection.h"
@@ -154,6 +149,8 @@ std::vector<double> GetResiduals(lacuna::Execution& execution,
 
 vtkLacunaRBFSurface::vtkLacunaRBFSurface()
 {
+  this->Sharing = lacuna::Share::FirstRank;
+  this->TakesEmpty = true; // an error
   this->SetNumberOfInputPorts(2);
   this->SetNumberOfOutputPorts(2);
 }
@@ -222,272 +219,241 @@ bool vtkLacunaRBFSurface::HasOutputBounds() const
 }
 
 //------------------------------------------------------------------------------
-int vtkLacunaRBFSurface::RequestInformation(
-  vtkInformation*, vtkInformationVector**, vtkInformationVector* outputs)
+void vtkLacunaRBFSurface::Announce(const lacuna::Ports& ports)
 {
-  return vtkLacunaExecution::RunInformation(this, outputs,
-    [&]
+  int extent[6] = { 0, -1, 0, -1, 0, -1 };
+  const double h = this->DistanceSpacing;
+  vtkInformation* info = ports.GetOutputInformation(1);
+  vtkLacunaVolumeDirection::AnnounceAlongAxes(info);
+  if (h > 0 && std::isfinite(h) && this->HasOutputBounds())
+  {
+    lacuna::Vec3 origin;
+    for (int c = 0; c < 3; ++c)
     {
-      int extent[6] = { 0, -1, 0, -1, 0, -1 };
-      const double h = this->DistanceSpacing;
-      vtkInformation* info = outputs->GetInformationObject(1);
-      vtkLacunaVolumeDirection::AnnounceAlongAxes(info);
-      if (h > 0 && std::isfinite(h) && this->HasOutputBounds() && vtkLacunaRanks().GetRank() == 0)
-      {
-        lacuna::Vec3 origin;
-        for (int c = 0; c < 3; ++c)
-        {
-          origin[c] = this->OutputBounds[2 * c];
-          constexpr double most = 1 << 16; // more is refused when it is made
-          extent[2 * c + 1] = static_cast<int>(
-            std::min(most, (this->OutputBounds[2 * c + 1] - origin[c]) / h + 1e-6));
-        }
-        const lacuna::Vec3 spacing{ h, h, h };
-        info->Set(vtkDataObject::ORIGIN(), origin.data(), 3);
-        info->Set(vtkDataObject::SPACING(), spacing.data(), 3);
-        vtkDataObject::SetPointDataActiveScalarInfo(info, VTK_FLOAT, 1);
-      }
-      info->Set(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), extent, 6);
-    });
+      origin[c] = this->OutputBounds[2 * c];
+      constexpr double most = 1 << 16; // more is refused when it is made
+      extent[2 * c + 1] =
+        static_cast<int>(std::min(most, (this->OutputBounds[2 * c + 1] - origin[c]) / h + 1e-6));
+    }
+    const lacuna::Vec3 spacing{ h, h, h };
+    info->Set(vtkDataObject::ORIGIN(), origin.data(), 3);
+    info->Set(vtkDataObject::SPACING(), spacing.data(), 3);
+    vtkDataObject::SetPointDataActiveScalarInfo(info, VTK_FLOAT, 1);
+  }
+  info->Set(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), extent, 6);
 }
 
 //------------------------------------------------------------------------------
-int vtkLacunaRBFSurface::RequestUpdateExtent(
-  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
+void vtkLacunaRBFSurface::Make(const lacuna::Ports& ports, vtkLacunaExecution& execution)
 {
-  for (int port = 0; port < this->GetNumberOfInputPorts(); ++port)
+  auto* distances = ports.GetOutput<vtkImageData>(1);
+  distances->GetFieldData()->Initialize(); // VTK passes that of the input, which may be turned
+  if (this->Kernel != Biharmonic && this->Kernel != Triharmonic)
   {
-    for (int i = 0; i < inputs[port]->GetNumberOfInformationObjects(); ++i)
+    throw std::runtime_error("Kernel is " + std::to_string(this->Kernel) +
+      "; it must be 0 (Biharmonic) or 1 (Triharmonic)");
+  }
+  const std::pair<const char*, double> positive[] = { { "Accuracy", this->Accuracy },
+    { "Tolerance", this->Tolerance } };
+  for (const auto& property : positive)
+  {
+    if (!(property.second > 0) || !std::isfinite(property.second))
     {
-      vtkLacunaRequest::Whole(this, inputs[port]->GetInformationObject(i), outputs);
+      throw std::runtime_error(
+        std::string(property.first) + " must be a finite number above 0, in mm");
     }
   }
-  return 1;
+  for (const auto& property : { std::pair<const char*, double>{ "Smoothing", this->Smoothing },
+         { "OutputSpacing", this->OutputSpacing }, { "DistanceSpacing", this->DistanceSpacing } })
+  {
+    if (!(property.second >= 0) || !std::isfinite(property.second))
+    {
+      throw std::runtime_error(
+        std::string(property.first) + " must be a finite number >= 0, in mm");
+    }
+  }
+  const auto start = std::chrono::steady_clock::now();
+  execution.SetStage(0, 0.05);
+  vtkLacunaSurfacePoints collected;
+  collected.ErrorArray = this->ErrorArray;
+  collected.SideArray = this->SideArray;
+  for (int i = 0; i < this->GetNumberOfInputConnections(0); ++i)
+  {
+    auto* data = ports.GetInput<vtkDataSet>(0, i);
+    if (auto* image = vtkImageData::SafeDownCast(data))
+    {
+      vtkLacunaVolumeDirection::Check(image);
+    }
+    collected.Add(execution, data, i + 1);
+  }
+  lacuna::OrientedPoints& points = collected.Data;
+  if (points.Points.empty())
+  {
+    throw std::runtime_error("the input has no points of a surface");
+  }
+  collected.Check();
+  const std::array<double, 6> own = GetBounds(points.Points, collected.Inside);
+  const double extent = GetExtent(own);
+  this->CheckDistanceGrid(own);
+  std::unique_ptr<vtkLacunaSurfacePrior> prior;
+  if (this->PriorFunction)
+  {
+    prior = std::make_unique<vtkLacunaSurfacePrior>(this->PriorFunction, extent);
+  }
+  else if (this->GetNumberOfInputConnections(1) > 0)
+  {
+    auto* data = ports.GetInput<vtkDataSet>(1);
+    if (data && data->GetNumberOfPoints() > 0)
+    {
+      prior = std::make_unique<vtkLacunaSurfacePrior>(data);
+    }
+    else
+    {
+      collected.Warnings.push_back("PriorSurface has no points and does not count");
+    }
+  }
+  const double spacing = FindSpacing(execution, points.Points);
+  this->CheckNormals(execution, points, 0.5 * spacing);
+
+  // the error of a volume takes as many fits again
+  const double fitEnd = collected.HasOutlines ? 0.35 : 0.65;
+  const double followEnd = fitEnd + 0.25;
+  execution.SetStage(0.05, fitEnd);
+  lacuna::BlendedSplineOptions options;
+  options.Kernel =
+    this->Kernel == Triharmonic ? lacuna::RadialKernel::Cubic : lacuna::RadialKernel::Linear;
+  options.PointError = this->Smoothing;
+  options.Accuracy = this->Accuracy;
+  options.LeastNormalError = collected.HasEstimatedNormals ? EstimatedNormalError : 0;
+  if (!collected.HasOutlines)
+  {
+    points.Free.clear();
+  }
+  else
+  {
+    options.LeastNormalError = std::max(options.LeastNormalError, lacuna::OutlineNormalError);
+    lacuna::FindOutlineNormals(execution, points, options);
+  }
+  options.Inside = collected.Inside;
+  options.Outside = collected.Outside;
+  const lacuna::BlendedSpline fit(execution, points, options, prior.get());
+  this->CheckSides(fit.GetReport());
+
+  execution.SetStage(fitEnd, followEnd);
+  lacuna::SurfaceFollowerOptions follow;
+  // points along outlines are denser than these
+  const double finest = collected.HasOutlines ? FinestOfOutlines : FinestEdge;
+  follow.EdgeLength = this->OutputSpacing > 0
+    ? this->OutputSpacing
+    : std::clamp(spacing, finest * extent, CoarsestEdge * extent);
+  follow.Tolerance = std::min(this->Tolerance, LargestTolerance * follow.EdgeLength);
+  if (follow.EdgeLength > TooCoarse * extent)
+  {
+    collected.Warnings.push_back("OutputSpacing is more than a tenth of the points' extent: the "
+                                 "triangles cut off curves, and the volume is theirs");
+  }
+  // each point stands for a square of the spacing
+  const double squares = static_cast<double>(points.Points.size()) * spacing * spacing /
+    (follow.EdgeLength * follow.EdgeLength);
+  constexpr double bytesPerSquare = 1500; // cells, nodes and triangles
+  lacuna::RequireMemory(
+    "a surface of such small triangles (choose a larger OutputSpacing)", bytesPerSquare * squares);
+  follow.Cap = this->CapBoundary;
+  for (int c = 0; c < 3; ++c)
+  {
+    const bool given = this->OutputBounds[2 * c] <= this->OutputBounds[2 * c + 1];
+    follow.Bounds[2 * c] = given ? this->OutputBounds[2 * c] : own[2 * c] - BoundsMargin * extent;
+    follow.Bounds[2 * c + 1] =
+      given ? this->OutputBounds[2 * c + 1] : own[2 * c + 1] + BoundsMargin * extent;
+  }
+  const lacuna::FollowedSurface followed =
+    lacuna::FollowSurface(execution, fit, points.Points, follow);
+  const bool isClosed = this->CheckSurface(followed, collected.Warnings);
+
+  execution.SetStage(followEnd, followEnd + 0.05);
+  const std::vector<double> residuals = GetResiduals(execution, fit, points.Points);
+  auto* output = ports.GetOutput<vtkPolyData>();
+  SetSurface(output, followed);
+  const vtkIdType n = output->GetNumberOfPoints();
+  vtkFloatArray* distance = AddArray(output, "Distance", n);
+  vtkFloatArray* residual = AddArray(output, "Residual", n);
+  vtkFloatArray* support = AddArray(output, "Support", n);
+  const lacuna::PointNeighbors neighbors(points.Points);
+  execution.For(n, 1024,
+    [&](std::int64_t begin, std::int64_t end)
+    {
+      std::vector<std::size_t> nearest;
+      std::vector<double> away;
+      for (std::int64_t i = begin; i < end; ++i)
+      {
+        neighbors.Find(followed.Surface.Points[i], 1, nearest, &away);
+        distance->SetValue(i, static_cast<float>(away[0]));
+        residual->SetValue(i, static_cast<float>(residuals[nearest[0]]));
+        support->SetValue(i, static_cast<float>(spacing > 0 ? away[0] / spacing : 0));
+      }
+    });
+  double sum = 0;
+  double largest = 0;
+  for (const double r : residuals)
+  {
+    sum += r * r / static_cast<double>(residuals.size());
+    largest = std::max(largest, std::abs(r));
+  }
+  const auto set = [output](const char* name, double value)
+  { vtkLacunaFieldData::Set(output, name, { value }, 1); };
+  const lacuna::BlendedSplineReport& report = fit.GetReport();
+  if (isClosed)
+  {
+    set("SurfaceVolume", followed.Surface.GetVolume() / 1000);
+  }
+  if (std::sqrt(sum) > ManyMissed * extent)
+  {
+    vtkWarningMacro(<< "the surface misses the points by " << std::sqrt(sum)
+                    << " mm (RMS): there are too few, or their normals or the outlines "
+                       "contradict each other. Colour by Residual to see where");
+  }
+  if (collected.HasOutlines && isClosed)
+  {
+    execution.SetStage(followEnd + 0.05, 0.95);
+    set("SurfaceVolumeError",
+      lacuna::EstimateVolumeError(
+        execution, points, options, fit.GetReport().Spline, followed.Surface) /
+        1000);
+  }
+  set("SurfaceArea", followed.Surface.GetArea());
+  set("ResidualRMS", std::sqrt(sum));
+  set("ResidualMaximum", largest);
+  if (prior)
+  {
+    set("PriorUsed", fit.GetReport().UsesPrior ? 1 : 0);
+  }
+  set("PointError", report.PointError);
+  set("NormalError", std::atan(report.Spline.NormalError) * 180 / std::acos(-1.0));
+  set("CenterCount", static_cast<double>(report.Centers));
+  set("FitTime", std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+  if (this->DistanceSpacing > 0)
+  {
+    execution.SetStage(0.95, 1);
+    this->SetDistances(execution, followed.Surface, distances);
+  }
 }
 
 //------------------------------------------------------------------------------
-int vtkLacunaRBFSurface::RequestData(
-  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
+std::string vtkLacunaRBFSurface::Parameters(int) const
 {
-  const bool isWanted = vtkLacunaRequest::IsWanted(outputs); // it is made in one piece
-  vtkImageData* distances = vtkImageData::GetData(outputs, 1);
-  distances->GetFieldData()->Initialize(); // VTK passes that of the input, which may be turned
-  return vtkLacunaExecution::RunAgreed(this, outputs, isWanted,
-    [&](vtkLacunaExecution& execution)
-    {
-      if (this->Kernel != Biharmonic && this->Kernel != Triharmonic)
-      {
-        throw std::runtime_error("Kernel is " + std::to_string(this->Kernel) +
-          "; it must be 0 (Biharmonic) or 1 (Triharmonic)");
-      }
-      const std::pair<const char*, double> positive[] = { { "Accuracy", this->Accuracy },
-        { "Tolerance", this->Tolerance } };
-      for (const auto& property : positive)
-      {
-        if (!(property.second > 0) || !std::isfinite(property.second))
-        {
-          throw std::runtime_error(
-            std::string(property.first) + " must be a finite number above 0, in mm");
-        }
-      }
-      for (const auto& property :
-        { std::pair<const char*, double>{ "Smoothing", this->Smoothing },
-          { "OutputSpacing", this->OutputSpacing }, { "DistanceSpacing", this->DistanceSpacing } })
-      {
-        if (!(property.second >= 0) || !std::isfinite(property.second))
-        {
-          throw std::runtime_error(
-            std::string(property.first) + " must be a finite number >= 0, in mm");
-        }
-      }
-      const auto start = std::chrono::steady_clock::now();
-      execution.SetStage(0, 0.05);
-      vtkLacunaSurfacePoints collected;
-      collected.ErrorArray = this->ErrorArray;
-      collected.SideArray = this->SideArray;
-      std::vector<vtkDataObject*> sources;
-      for (int i = 0; i < inputs[0]->GetNumberOfInformationObjects(); ++i)
-      {
-        vtkDataSet* data = vtkDataSet::GetData(inputs[0], i);
-        if (auto* image = vtkImageData::SafeDownCast(data))
-        {
-          vtkLacunaVolumeDirection::Check(image);
-        }
-        collected.Add(execution, data, i + 1);
-        if (data)
-        {
-          sources.push_back(data);
-        }
-      }
-      lacuna::OrientedPoints& points = collected.Data;
-      if (points.Points.empty())
-      {
-        throw std::runtime_error("the input has no points of a surface");
-      }
-      collected.Check();
-      const std::array<double, 6> own = GetBounds(points.Points, collected.Inside);
-      const double extent = GetExtent(own);
-      this->CheckDistanceGrid(own);
-      std::unique_ptr<vtkLacunaSurfacePrior> prior;
-      if (this->PriorFunction)
-      {
-        prior = std::make_unique<vtkLacunaSurfacePrior>(this->PriorFunction, extent);
-      }
-      else if (inputs[1]->GetNumberOfInformationObjects() > 0)
-      {
-        vtkDataSet* data = vtkDataSet::GetData(inputs[1], 0);
-        if (data && data->GetNumberOfPoints() > 0)
-        {
-          prior = std::make_unique<vtkLacunaSurfacePrior>(data);
-          sources.push_back(data);
-        }
-        else
-        {
-          collected.Warnings.push_back("PriorSurface has no points and does not count");
-        }
-      }
-      const double spacing = FindSpacing(execution, points.Points);
-      this->CheckNormals(execution, points, 0.5 * spacing);
-
-      // the error of a volume takes as many fits again
-      const double fitEnd = collected.HasOutlines ? 0.35 : 0.65;
-      const double followEnd = fitEnd + 0.25;
-      execution.SetStage(0.05, fitEnd);
-      lacuna::BlendedSplineOptions options;
-      options.Kernel =
-        this->Kernel == Triharmonic ? lacuna::RadialKernel::Cubic : lacuna::RadialKernel::Linear;
-      options.PointError = this->Smoothing;
-      options.Accuracy = this->Accuracy;
-      options.LeastNormalError = collected.HasEstimatedNormals ? EstimatedNormalError : 0;
-      if (!collected.HasOutlines)
-      {
-        points.Free.clear();
-      }
-      else
-      {
-        options.LeastNormalError = std::max(options.LeastNormalError, lacuna::OutlineNormalError);
-        lacuna::FindOutlineNormals(execution, points, options);
-      }
-      options.Inside = collected.Inside;
-      options.Outside = collected.Outside;
-      const lacuna::BlendedSpline fit(execution, points, options, prior.get());
-      this->CheckSides(fit.GetReport());
-
-      execution.SetStage(fitEnd, followEnd);
-      lacuna::SurfaceFollowerOptions follow;
-      // points along outlines are denser than these
-      const double finest = collected.HasOutlines ? FinestOfOutlines : FinestEdge;
-      follow.EdgeLength = this->OutputSpacing > 0
-        ? this->OutputSpacing
-        : std::clamp(spacing, finest * extent, CoarsestEdge * extent);
-      follow.Tolerance = std::min(this->Tolerance, LargestTolerance * follow.EdgeLength);
-      if (follow.EdgeLength > TooCoarse * extent)
-      {
-        collected.Warnings.push_back(
-          "OutputSpacing is more than a tenth of the points' extent: the "
-          "triangles cut off curves, and the volume is theirs");
-      }
-      // each point stands for a square of the spacing
-      const double squares = static_cast<double>(points.Points.size()) * spacing * spacing /
-        (follow.EdgeLength * follow.EdgeLength);
-      constexpr double bytesPerSquare = 1500; // cells, nodes and triangles
-      lacuna::RequireMemory("a surface of such small triangles (choose a larger OutputSpacing)",
-        bytesPerSquare * squares);
-      follow.Cap = this->CapBoundary;
-      for (int c = 0; c < 3; ++c)
-      {
-        const bool given = this->OutputBounds[2 * c] <= this->OutputBounds[2 * c + 1];
-        follow.Bounds[2 * c] =
-          given ? this->OutputBounds[2 * c] : own[2 * c] - BoundsMargin * extent;
-        follow.Bounds[2 * c + 1] =
-          given ? this->OutputBounds[2 * c + 1] : own[2 * c + 1] + BoundsMargin * extent;
-      }
-      const lacuna::FollowedSurface followed =
-        lacuna::FollowSurface(execution, fit, points.Points, follow);
-      const bool isClosed = this->CheckSurface(followed, collected.Warnings);
-
-      execution.SetStage(followEnd, followEnd + 0.05);
-      const std::vector<double> residuals = GetResiduals(execution, fit, points.Points);
-      vtkPolyData* output = vtkPolyData::GetData(outputs);
-      SetSurface(output, followed);
-      const vtkIdType n = output->GetNumberOfPoints();
-      vtkFloatArray* distance = AddArray(output, "Distance", n);
-      vtkFloatArray* residual = AddArray(output, "Residual", n);
-      vtkFloatArray* support = AddArray(output, "Support", n);
-      const lacuna::PointNeighbors neighbors(points.Points);
-      execution.For(n, 1024,
-        [&](std::int64_t begin, std::int64_t end)
-        {
-          std::vector<std::size_t> nearest;
-          std::vector<double> away;
-          for (std::int64_t i = begin; i < end; ++i)
-          {
-            neighbors.Find(followed.Surface.Points[i], 1, nearest, &away);
-            distance->SetValue(i, static_cast<float>(away[0]));
-            residual->SetValue(i, static_cast<float>(residuals[nearest[0]]));
-            support->SetValue(i, static_cast<float>(spacing > 0 ? away[0] / spacing : 0));
-          }
-        });
-      double sum = 0;
-      double largest = 0;
-      for (const double r : residuals)
-      {
-        sum += r * r / static_cast<double>(residuals.size());
-        largest = std::max(largest, std::abs(r));
-      }
-      const auto set = [output](const char* name, double value)
-      { vtkLacunaFieldData::Set(output, name, { value }, 1); };
-      const lacuna::BlendedSplineReport& report = fit.GetReport();
-      if (isClosed)
-      {
-        set("SurfaceVolume", followed.Surface.GetVolume() / 1000);
-      }
-      if (std::sqrt(sum) > ManyMissed * extent)
-      {
-        vtkWarningMacro(<< "the surface misses the points by " << std::sqrt(sum)
-                        << " mm (RMS): there are too few, or their normals or the outlines "
-                           "contradict each other. Colour by Residual to see where");
-      }
-      if (collected.HasOutlines && isClosed)
-      {
-        execution.SetStage(followEnd + 0.05, 0.95);
-        set("SurfaceVolumeError",
-          lacuna::EstimateVolumeError(
-            execution, points, options, fit.GetReport().Spline, followed.Surface) /
-            1000);
-      }
-      set("SurfaceArea", followed.Surface.GetArea());
-      set("ResidualRMS", std::sqrt(sum));
-      set("ResidualMaximum", largest);
-      if (prior)
-      {
-        set("PriorUsed", fit.GetReport().UsesPrior ? 1 : 0);
-      }
-      set("PointError", report.PointError);
-      set("NormalError", std::atan(report.Spline.NormalError) * 180 / std::acos(-1.0));
-      set("CenterCount", static_cast<double>(report.Centers));
-      set(
-        "FitTime", std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
-      lacuna::ParameterText parameters;
-      parameters.Add("Kernel", this->Kernel)
-        .Add("Smoothing", this->Smoothing)
-        .Add("Accuracy", this->Accuracy)
-        .Add("Tolerance", this->Tolerance)
-        .Add("ErrorArray", this->ErrorArray)
-        .Add("OutputSpacing", this->OutputSpacing)
-        .Add("OutputBounds", this->OutputBounds)
-        .Add("CapBoundary", this->CapBoundary)
-        .Add("SideArray", this->SideArray)
-        .Add("PriorFunction", this->PriorFunction ? this->PriorFunction->GetClassName() : "None")
-        .Add("DistanceSpacing", this->DistanceSpacing);
-      vtkLacunaProvenance::Record(output, this, sources, parameters.Get());
-      if (this->DistanceSpacing > 0)
-      {
-        execution.SetStage(0.95, 1);
-        this->SetDistances(execution, followed.Surface, distances);
-        vtkLacunaProvenance::Record(distances, this, sources, parameters.Get());
-      }
-    });
+  return lacuna::ParameterText()
+    .Add("Kernel", this->Kernel)
+    .Add("Smoothing", this->Smoothing)
+    .Add("Accuracy", this->Accuracy)
+    .Add("Tolerance", this->Tolerance)
+    .Add("ErrorArray", this->ErrorArray)
+    .Add("OutputSpacing", this->OutputSpacing)
+    .Add("OutputBounds", this->OutputBounds)
+    .Add("CapBoundary", this->CapBoundary)
+    .Add("SideArray", this->SideArray)
+    .Add("PriorFunction", this->PriorFunction ? this->PriorFunction->GetClassName() : "None")
+    .Add("DistanceSpacing", this->DistanceSpacing)
+    .Get();
 }
 
 //------------------------------------------------------------------------------

@@ -49,8 +49,8 @@
 #ifndef vtkLacunaRBFSurface_h
 #define vtkLacunaRBFSurface_h
 
+#include "vtkLacunaAlgorithm.h"
 #include "vtkLacunaFiltersRadialBasisModule.h" // for export macro
-#include "vtkLacunaVersionCompat.h"            // for stops
 #include "vtkPolyDataAlgorithm.h"
 #include "vtkSmartPointer.h" // for ivars
 
@@ -70,13 +70,13 @@ struct TriangleSurface;
 class vtkImageData;
 class vtkImplicitFunction;
 
-class VTKLACUNAFILTERSRADIALBASIS_EXPORT vtkLacunaRBFSurface : public vtkPolyDataAlgorithm
+class VTKLACUNAFILTERSRADIALBASIS_EXPORT vtkLacunaRBFSurface
+  : public vtkLacunaAlgorithmOf(vtkPolyDataAlgorithm)
 {
 public:
   static vtkLacunaRBFSurface* New();
   vtkTypeMacro(vtkLacunaRBFSurface, vtkPolyDataAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
-  vtkLacunaKeepTimeAtStops();
 
   enum KernelType
   {
@@ -181,9 +181,9 @@ protected:
   ~vtkLacunaRBFSurface() override;
   int FillInputPortInformation(int port, vtkInformation* info) override;
   int FillOutputPortInformation(int port, vtkInformation* info) override;
-  int RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
-  int RequestUpdateExtent(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
-  int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
+  void Announce(const lacuna::Ports& ports) override;
+  void Make(const lacuna::Ports& ports, vtkLacunaExecution& execution) override;
+  std::string Parameters(int port) const override;
 
 private:
   void CheckNormals(
