@@ -9,12 +9,8 @@
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
-#include "vtkLacunaCoordinates.h"
-#include "vtkLacunaExecution.h"
 #include "vtkLacunaFieldData.h"
 #include "vtkLacunaPoseRecords.h"
-#include "vtkLacunaProvenance.h"
-#include "vtkLacunaRequest.h"
 #include "vtkLacunaStackPixels.h"
 #include "vtkLacunaTrackedSlices.h"
 #include "vtkLacunaVolumeDirection.h"
@@ -50,6 +46,9 @@ vtkStandardNewMacro(vtkLacunaAssembleTrackedSlices);
 //------------------------------------------------------------------------------
 vtkLacunaAssembleTrackedSlices::vtkLacunaAssembleTrackedSlices()
 {
+  this->Sharing = lacuna::Share::Parts;
+  this->TakesEmpty = true;  // an error
+  this->KeepsPlace = false; // columns, rows and slices, whatever the pictures' are
   this->SetNumberOfInputPorts(2);
 }
 
@@ -131,54 +130,46 @@ int vtkLacunaAssembleTrackedSlices::FillInputPortInformation(int port, vtkInform
 }
 
 //------------------------------------------------------------------------------
-int vtkLacunaAssembleTrackedSlices::RequestInformation(
-  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
+void vtkLacunaAssembleTrackedSlices::Announce(const lacuna::Ports& ports)
 {
-  return vtkLacunaExecution::RunInformation(this, outputs,
-    [&]
-    {
-      vtkInformation* in = inputs[0]->GetInformationObject(0);
-      vtkInformation* out = outputs->GetInformationObject(0);
-      std::array<int, 6> extent = GetExtent(in, SDDP::WHOLE_EXTENT());
-      this->TimeSteps.clear();
-      if (extent[4] == extent[5] && in->Has(SDDP::TIME_STEPS()) &&
-        in->Length(SDDP::TIME_STEPS()) > 1)
-      {
-        const double* times = in->Get(SDDP::TIME_STEPS());
-        this->TimeSteps.assign(times, times + in->Length(SDDP::TIME_STEPS()));
-        extent[4] = 0;
-        extent[5] = in->Length(SDDP::TIME_STEPS()) - 1;
-        out->Remove(SDDP::TIME_STEPS());
-        out->Remove(SDDP::TIME_RANGE());
-      }
-      out->Set(SDDP::WHOLE_EXTENT(), extent.data(), 6);
-      const double rows = this->RowOrder == BottomRowFirst ? -extent[2] : 0;
-      out->Set(vtkDataObject::ORIGIN(), 0.0, rows, -static_cast<double>(extent[4]));
-      out->Set(vtkDataObject::SPACING(), 1.0, 1.0, 1.0);
-      vtkLacunaVolumeDirection::AnnounceAlongAxes(out);
-      out->Set(vtkAlgorithm::CAN_PRODUCE_SUB_EXTENT(), 1);
-      vtkImageData* stack = vtkImageData::GetData(in);
-      if (stack && stack->GetNumberOfPoints() > 0 && !stack->GetPointData()->GetScalars())
-      {
-        // VTK announces double where no array is active; the only one is taken, whatever its type
-        out->Remove(vtkDataObject::POINT_DATA_VECTOR());
-      }
-      else if (vtkInformation* scalars = vtkDataObject::GetActiveFieldInformation(
-                 in, vtkDataObject::FIELD_ASSOCIATION_POINTS, vtkDataSetAttributes::SCALARS))
-      {
-        vtkDataObject::SetPointDataActiveScalarInfo(
-          out, scalars->Get(vtkDataObject::FIELD_ARRAY_TYPE()), 1);
-      }
-    });
+  vtkInformation* in = ports.GetInputInformation();
+  vtkInformation* out = ports.GetOutputInformation();
+  std::array<int, 6> extent = GetExtent(in, SDDP::WHOLE_EXTENT());
+  this->TimeSteps.clear();
+  if (extent[4] == extent[5] && in->Has(SDDP::TIME_STEPS()) && in->Length(SDDP::TIME_STEPS()) > 1)
+  {
+    const double* times = in->Get(SDDP::TIME_STEPS());
+    this->TimeSteps.assign(times, times + in->Length(SDDP::TIME_STEPS()));
+    extent[4] = 0;
+    extent[5] = in->Length(SDDP::TIME_STEPS()) - 1;
+    out->Remove(SDDP::TIME_STEPS());
+    out->Remove(SDDP::TIME_RANGE());
+  }
+  out->Set(SDDP::WHOLE_EXTENT(), extent.data(), 6);
+  const double rows = this->RowOrder == BottomRowFirst ? -extent[2] : 0;
+  out->Set(vtkDataObject::ORIGIN(), 0.0, rows, -static_cast<double>(extent[4]));
+  out->Set(vtkDataObject::SPACING(), 1.0, 1.0, 1.0);
+  vtkLacunaVolumeDirection::AnnounceAlongAxes(out);
+  vtkImageData* stack = vtkImageData::GetData(in);
+  if (stack && stack->GetNumberOfPoints() > 0 && !stack->GetPointData()->GetScalars())
+  {
+    // VTK announces double where no array is active; the only one is taken, whatever its type
+    out->Remove(vtkDataObject::POINT_DATA_VECTOR());
+  }
+  else if (vtkInformation* scalars = vtkDataObject::GetActiveFieldInformation(
+             in, vtkDataObject::FIELD_ASSOCIATION_POINTS, vtkDataSetAttributes::SCALARS))
+  {
+    vtkDataObject::SetPointDataActiveScalarInfo(
+      out, scalars->Get(vtkDataObject::FIELD_ARRAY_TYPE()), 1);
+  }
 }
 
 //------------------------------------------------------------------------------
-int vtkLacunaAssembleTrackedSlices::RequestUpdateExtent(
-  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
+void vtkLacunaAssembleTrackedSlices::Ask(const lacuna::Ports& ports)
 {
-  vtkInformation* in = inputs[0]->GetInformationObject(0);
-  vtkInformation* table = inputs[1]->GetInformationObject(0);
-  const std::array<int, 6> wanted = vtkLacunaRequest::GetPart(outputs->GetInformationObject(0));
+  this->Algorithm::Ask(ports); // the table as a whole
+  vtkInformation* in = ports.GetInputInformation();
+  const std::array<int, 6> wanted = GetPart(ports.GetOutputInformation());
   // Whole pictures: which rows are wanted is known when the order of rows is.
   std::array<int, 6> extent = GetExtent(in, SDDP::WHOLE_EXTENT());
   if (this->TimeSteps.empty())
@@ -188,7 +179,7 @@ int vtkLacunaAssembleTrackedSlices::RequestUpdateExtent(
   }
   else
   {
-    // the first picture; RequestData asks for the others
+    // the first picture; Make asks for the others
     const auto last = static_cast<int>(this->TimeSteps.size()) - 1;
     in->Set(SDDP::UPDATE_TIME_STEP(), this->TimeSteps[std::max(0, std::min(wanted[4], last))]);
   }
@@ -197,24 +188,26 @@ int vtkLacunaAssembleTrackedSlices::RequestUpdateExtent(
     extent = { 0, -1, 0, -1, 0,
       -1 }; // also no columns and rows, which others would take for wanted
   }
-  vtkLacunaRequest::Extent(this, in, extent.data());
-  vtkLacunaRequest::OnePiece(table);
-  return 1;
+  this->AskFor(in, extent);
 }
 
 //------------------------------------------------------------------------------
-int vtkLacunaAssembleTrackedSlices::RequestData(
-  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
+void vtkLacunaAssembleTrackedSlices::Make(const lacuna::Ports& ports, vtkLacunaExecution& execution)
 {
-  return vtkLacunaExecution::RunAgreed(this, outputs, true,
-    [&](vtkLacunaExecution& execution)
-    {
-      vtkInformation* info = outputs->GetInformationObject(0);
-      vtkImageData* output = vtkImageData::GetData(outputs);
-      output->GetFieldData()->Initialize(); // VTK passes the stack's own
-      this->CollectPixels(vtkImageData::GetData(inputs[0]), info, output, execution);
-      this->Assemble(vtkImageData::GetData(inputs[0]), vtkTable::GetData(inputs[1]), info, output);
-    });
+  auto* stack = ports.GetInput<vtkImageData>();
+  auto* output = ports.GetOutput<vtkImageData>();
+  vtkInformation* info = ports.GetOutputInformation();
+  this->Source = nullptr;
+  output->GetFieldData()->Initialize(); // VTK passes the stack's own
+  this->CollectPixels(stack, info, output, execution);
+  this->Assemble(stack, ports.GetInput<vtkTable>(1), info, output);
+}
+
+//------------------------------------------------------------------------------
+std::vector<vtkDataObject*> vtkLacunaAssembleTrackedSlices::GetOrigins(
+  const lacuna::Ports& ports) const
+{
+  return { this->Source, ports.GetInput<vtkDataObject>(1) };
 }
 
 //------------------------------------------------------------------------------
@@ -277,7 +270,7 @@ vtkImageData* vtkLacunaAssembleTrackedSlices::UpdatePicture(int step)
   requests->SetNumberOfInformationObjects(producer->GetNumberOfOutputPorts());
   vtkInformation* info = requests->GetInformationObject(port);
   info->Set(SDDP::UPDATE_TIME_STEP(), this->TimeSteps[step]);
-  vtkLacunaRequest::OnePiece(info);
+  this->AskForWhole(info);
   auto* picture = producer->Update(port, requests)
     ? vtkImageData::SafeDownCast(producer->GetOutputDataObject(port))
     : nullptr;
@@ -350,12 +343,10 @@ void vtkLacunaAssembleTrackedSlices::Assemble(
   }
   vtkLacunaTrackedSlices::Write(output, poses, records.Times, records.Status, records.FrameNumbers);
   // The hash is that of all slices, also where they came one by one.
-  vtkNew<vtkImageData> source;
-  source->SetExtent(output->GetExtent());
-  source->GetPointData()->SetScalars(output->GetPointData()->GetScalars());
-  source->SetFieldData(stack->GetFieldData());
-  vtkLacunaProvenance::Record(output, this, { source, table }, this->DescribeParameters());
-  vtkLacunaCoordinates::Clear(output); // columns, rows and slices, whatever the pictures' are
+  this->Source = vtkSmartPointer<vtkImageData>::New();
+  this->Source->SetExtent(output->GetExtent());
+  this->Source->GetPointData()->SetScalars(output->GetPointData()->GetScalars());
+  this->Source->SetFieldData(stack->GetFieldData());
 }
 
 //------------------------------------------------------------------------------
@@ -391,7 +382,7 @@ std::vector<double> vtkLacunaAssembleTrackedSlices::GetSliceTimes(
 }
 
 //------------------------------------------------------------------------------
-std::string vtkLacunaAssembleTrackedSlices::DescribeParameters() const
+std::string vtkLacunaAssembleTrackedSlices::Parameters(int) const
 {
   constexpr std::array<const char*, 3> formats{ "Matrix", "Quaternion", "Euler" };
   constexpr std::array<const char*, 4> transforms{ "ProbeToReference", "ReferenceToProbe",
@@ -425,5 +416,5 @@ std::string vtkLacunaAssembleTrackedSlices::DescribeParameters() const
 void vtkLacunaAssembleTrackedSlices::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
-  os << indent << "Parameters: " << this->DescribeParameters() << "\n";
+  os << indent << "Parameters: " << this->Parameters(0) << "\n";
 }

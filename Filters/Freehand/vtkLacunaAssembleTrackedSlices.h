@@ -31,8 +31,9 @@
 #define vtkLacunaAssembleTrackedSlices_h
 
 #include "vtkImageAlgorithm.h"
+#include "vtkLacunaAlgorithm.h"
 #include "vtkLacunaFiltersFreehandModule.h" // for export macro
-#include "vtkLacunaVersionCompat.h"         // for stops
+#include "vtkSmartPointer.h"                // for ownership
 
 #include <string> // for std::string
 #include <vector> // for std::vector
@@ -40,13 +41,13 @@
 class vtkLacunaExecution;
 class vtkTable;
 
-class VTKLACUNAFILTERSFREEHAND_EXPORT vtkLacunaAssembleTrackedSlices : public vtkImageAlgorithm
+class VTKLACUNAFILTERSFREEHAND_EXPORT vtkLacunaAssembleTrackedSlices
+  : public vtkLacunaAlgorithmOf(vtkImageAlgorithm)
 {
 public:
   static vtkLacunaAssembleTrackedSlices* New();
   vtkTypeMacro(vtkLacunaAssembleTrackedSlices, vtkImageAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
-  vtkLacunaKeepTimeAtStops();
 
   enum PoseFormats
   {
@@ -189,12 +190,11 @@ protected:
   ~vtkLacunaAssembleTrackedSlices() override = default;
 
   int FillInputPortInformation(int port, vtkInformation* info) override;
-  int RequestInformation(
-    vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
-  int RequestUpdateExtent(
-    vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
-  int RequestData(
-    vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
+  void Announce(const lacuna::Ports& ports) override;
+  void Ask(const lacuna::Ports& ports) override;
+  void Make(const lacuna::Ports& ports, vtkLacunaExecution& execution) override;
+  std::string Parameters(int port) const override;
+  std::vector<vtkDataObject*> GetOrigins(const lacuna::Ports& ports) const override;
 
 private:
   vtkLacunaAssembleTrackedSlices(const vtkLacunaAssembleTrackedSlices&) = delete;
@@ -209,7 +209,6 @@ private:
   void Assemble(vtkImageData* stack, vtkTable* table, vtkInformation* info, vtkImageData* output);
   /// s; empty when they are not known.
   std::vector<double> GetSliceTimes(vtkImageData* stack, std::size_t slices) const;
-  std::string DescribeParameters() const;
 
   int PoseFormat = Matrix;
   int PoseTransform = ProbeToReference;
@@ -232,5 +231,6 @@ private:
 
   /// Time steps that become slices; empty for an ordinary stack.
   std::vector<double> TimeSteps;
+  vtkSmartPointer<vtkImageData> Source; ///< all slices that were used, for the provenance
 };
 #endif

@@ -9,12 +9,8 @@
 #include "vtkFieldData.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
-#include "vtkInformationVector.h"
-#include "vtkLacunaExecution.h"
 #include "vtkLacunaFieldData.h"
 #include "vtkLacunaPoseJudge.h"
-#include "vtkLacunaProvenance.h"
-#include "vtkLacunaRequest.h"
 #include "vtkLacunaSliceStream.h"
 #include "vtkLacunaTrackedSlices.h"
 #include "vtkNew.h"
@@ -123,6 +119,8 @@ vtkStandardNewMacro(vtkLacunaGateSlices);
 //------------------------------------------------------------------------------
 vtkLacunaGateSlices::vtkLacunaGateSlices()
 {
+  this->Sharing = lacuna::Share::Parts;
+  this->TakesEmpty = true; // passes field data on
   this->SetNumberOfInputPorts(2);
 }
 
@@ -159,118 +157,82 @@ void vtkLacunaGateSlices::SetKeyColumn(const char* name)
 }
 
 //------------------------------------------------------------------------------
-int vtkLacunaGateSlices::RequestInformation(
-  vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
+void vtkLacunaGateSlices::Announce(const lacuna::Ports& ports)
 {
-  return vtkLacunaExecution::RunInformation(this, outputs,
-    [&]
-    {
-      vtkInformation* info = outputs->GetInformationObject(0);
-      vtkLacunaSliceStream::Pass(this, info);
-      // Each rank asks for the extent that VTK turns its piece into.
-      info->Set(vtkAlgorithm::CAN_PRODUCE_SUB_EXTENT(), 1);
-      this->Superclass::RequestInformation(request, inputs, outputs);
-    });
+  vtkLacunaSliceStream::Pass(this, ports.GetOutputInformation());
 }
 
 //------------------------------------------------------------------------------
-int vtkLacunaGateSlices::RequestUpdateExtent(
-  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
+void vtkLacunaGateSlices::Make(const lacuna::Ports& ports, vtkLacunaExecution&)
 {
-  if (vtkInformation* table = inputs[1]->GetInformationObject(0))
+  auto* slices = ports.GetInput<vtkImageData>();
+  auto* table = ports.GetInput<vtkTable>(1);
+  auto* output = ports.GetOutput<vtkImageData>();
+  const int* whole =
+    ports.GetInputInformation()->Get(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT());
+  output->ShallowCopy(slices);
+  if (slices->GetNumberOfPoints() == 0)
   {
-    vtkLacunaRequest::OnePiece(table); // on every rank, whatever slices it has
+    return;
   }
-  vtkLacunaRequest::Extent(this, inputs[0]->GetInformationObject(0),
-    vtkLacunaRequest::GetPart(outputs->GetInformationObject(0)).data());
-  return 1;
-}
-
-//------------------------------------------------------------------------------
-int vtkLacunaGateSlices::RequestData(
-  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
-{
-  return vtkLacunaExecution::RunAgreed(this, outputs, true,
-    [&](vtkLacunaExecution&)
+  vtkDataArray* status =
+    vtkLacunaFieldData::Get(slices, vtkLacunaTrackedSlices::SliceStatusName, 1, -1);
+  const vtkIdType count = status->GetNumberOfTuples();
+  for (const int k : { slices->GetExtent()[4], slices->GetExtent()[5] })
+  {
+    vtkLacunaTrackedSlices::GetSliceNumber(slices, k, count); // throws when there is none
+  }
+  if (!(this->SpeedLimit >= 0))
+  {
+    throw std::runtime_error("SpeedLimit must be positive, or 0 for no limit");
+  }
+  const bool hasGate = table || slices->GetFieldData()->HasArray(this->GateColumn.c_str());
+  if (!hasGate && !(this->SpeedLimit > 0))
+  {
+    throw std::runtime_error("there is nothing to gate by: connect a table, or slices with a "
+                             "field data array '" +
+      this->GateColumn + "' (GateColumn), or give a SpeedLimit");
+  }
+  vtkNew<vtkUnsignedCharArray> flags;
+  flags->SetName(vtkLacunaTrackedSlices::SliceStatusName);
+  for (vtkIdType i = 0; i < count; ++i)
+  {
+    flags->InsertNextValue(static_cast<unsigned char>(status->GetTuple1(i)));
+  }
+  if (hasGate)
+  {
+    const std::vector<double> gates = this->GetGates(slices, table, count);
+    const lacuna::GateRange range(
+      this->GateRange[0], this->GateRange[1], this->GateType == Value ? 0 : this->Period);
+    vtkIdType unknown = 0;
+    for (vtkIdType i = 0; i < count; ++i)
     {
-      vtkImageData* slices = vtkImageData::GetData(inputs[0]);
-      const int* whole =
-        inputs[0]->GetInformationObject(0)->Get(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT());
-      vtkImageData* output = vtkImageData::GetData(outputs);
-      vtkTable* table = vtkTable::GetData(inputs[1]);
-      output->ShallowCopy(slices);
-      if (slices->GetNumberOfPoints() == 0)
+      unknown += std::isnan(gates[i]) ? 1 : 0;
+      if (!range.Accepts(gates[i]))
       {
-        return;
+        flags->SetValue(i, flags->GetValue(i) | vtkLacunaTrackedSlices::GatedOut);
       }
-      // what is upstream may have more, which another filter has asked for
-      output->Crop(
-        outputs->GetInformationObject(0)->Get(vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT()));
-      vtkDataArray* status =
-        vtkLacunaFieldData::Get(slices, vtkLacunaTrackedSlices::SliceStatusName, 1, -1);
-      const vtkIdType count = status->GetNumberOfTuples();
-      for (const int k : { slices->GetExtent()[4], slices->GetExtent()[5] })
+    }
+    if (unknown > 0)
+    {
+      vtkWarningMacro(<< unknown << " of " << count
+                      << " slices have no gate value and are gated out: the gate signal does "
+                         "not cover them");
+    }
+    vtkLacunaFieldData::Set(output, "Gate", gates, 1);
+  }
+  if (this->SpeedLimit > 0)
+  {
+    const std::vector<double> speeds = this->GetSpeeds(slices, whole, count);
+    for (vtkIdType i = 0; i < count; ++i)
+    {
+      if (speeds[i] > this->SpeedLimit)
       {
-        vtkLacunaTrackedSlices::GetSliceNumber(slices, k, count); // throws when there is none
+        flags->SetValue(i, flags->GetValue(i) | vtkLacunaTrackedSlices::TooFast);
       }
-      if (!(this->SpeedLimit >= 0))
-      {
-        throw std::runtime_error("SpeedLimit must be positive, or 0 for no limit");
-      }
-      const bool hasGate = table || slices->GetFieldData()->HasArray(this->GateColumn.c_str());
-      if (!hasGate && !(this->SpeedLimit > 0))
-      {
-        throw std::runtime_error("there is nothing to gate by: connect a table, or slices with a "
-                                 "field data array '" +
-          this->GateColumn + "' (GateColumn), or give a SpeedLimit");
-      }
-      vtkNew<vtkUnsignedCharArray> flags;
-      flags->SetName(vtkLacunaTrackedSlices::SliceStatusName);
-      for (vtkIdType i = 0; i < count; ++i)
-      {
-        flags->InsertNextValue(static_cast<unsigned char>(status->GetTuple1(i)));
-      }
-      if (hasGate)
-      {
-        const std::vector<double> gates = this->GetGates(slices, table, count);
-        const lacuna::GateRange range(
-          this->GateRange[0], this->GateRange[1], this->GateType == Value ? 0 : this->Period);
-        vtkIdType unknown = 0;
-        for (vtkIdType i = 0; i < count; ++i)
-        {
-          unknown += std::isnan(gates[i]) ? 1 : 0;
-          if (!range.Accepts(gates[i]))
-          {
-            flags->SetValue(i, flags->GetValue(i) | vtkLacunaTrackedSlices::GatedOut);
-          }
-        }
-        if (unknown > 0)
-        {
-          vtkWarningMacro(<< unknown << " of " << count
-                          << " slices have no gate value and are gated out: the gate signal does "
-                             "not cover them");
-        }
-        vtkLacunaFieldData::Set(output, "Gate", gates, 1);
-      }
-      if (this->SpeedLimit > 0)
-      {
-        const std::vector<double> speeds = this->GetSpeeds(slices, whole, count);
-        for (vtkIdType i = 0; i < count; ++i)
-        {
-          if (speeds[i] > this->SpeedLimit)
-          {
-            flags->SetValue(i, flags->GetValue(i) | vtkLacunaTrackedSlices::TooFast);
-          }
-        }
-      }
-      output->GetFieldData()->AddArray(flags);
-      std::vector<vtkDataObject*> sources{ slices };
-      if (table)
-      {
-        sources.push_back(table);
-      }
-      vtkLacunaProvenance::Record(output, this, sources, this->DescribeParameters());
-    });
+    }
+  }
+  output->GetFieldData()->AddArray(flags);
 }
 
 //------------------------------------------------------------------------------
@@ -429,7 +391,7 @@ std::vector<double> vtkLacunaGateSlices::GetSpeeds(
 }
 
 //------------------------------------------------------------------------------
-std::string vtkLacunaGateSlices::DescribeParameters() const
+std::string vtkLacunaGateSlices::Parameters(int) const
 {
   constexpr std::array<const char*, 3> types{ "Value", "Phase", "Trigger" };
   constexpr std::array<const char*, 2> keys{ "Timestamp", "FrameNumber" };
@@ -450,5 +412,5 @@ std::string vtkLacunaGateSlices::DescribeParameters() const
 void vtkLacunaGateSlices::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
-  os << indent << "Parameters: " << this->DescribeParameters() << "\n";
+  os << indent << "Parameters: " << this->Parameters(0) << "\n";
 }

@@ -34,8 +34,8 @@
 #define vtkLacunaGateSlices_h
 
 #include "vtkImageAlgorithm.h"
+#include "vtkLacunaAlgorithm.h"
 #include "vtkLacunaFiltersFreehandModule.h" // for export macro
-#include "vtkLacunaVersionCompat.h"         // for stops
 
 #include <string>
 #include <vector>
@@ -43,13 +43,13 @@
 class vtkImageData;
 class vtkTable;
 
-class VTKLACUNAFILTERSFREEHAND_EXPORT vtkLacunaGateSlices : public vtkImageAlgorithm
+class VTKLACUNAFILTERSFREEHAND_EXPORT vtkLacunaGateSlices
+  : public vtkLacunaAlgorithmOf(vtkImageAlgorithm)
 {
 public:
   static vtkLacunaGateSlices* New();
   vtkTypeMacro(vtkLacunaGateSlices, vtkImageAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
-  vtkLacunaKeepTimeAtStops();
 
   enum GateTypes
   {
@@ -138,12 +138,9 @@ protected:
   ~vtkLacunaGateSlices() override = default;
 
   int FillInputPortInformation(int port, vtkInformation* info) override;
-  int RequestInformation(
-    vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
-  int RequestUpdateExtent(
-    vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
-  int RequestData(
-    vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
+  void Announce(const lacuna::Ports& ports) override;
+  void Make(const lacuna::Ports& ports, vtkLacunaExecution& execution) override;
+  std::string Parameters(int port) const override;
 
 private:
   vtkLacunaGateSlices(const vtkLacunaGateSlices&) = delete;
@@ -154,7 +151,6 @@ private:
   std::vector<double> GetGatesByFrame(vtkImageData* slices, vtkTable* table, vtkIdType count);
   void WarnOfEmptyKeys(const std::vector<double>& keys);
   std::vector<double> GetSpeeds(vtkImageData* slices, const int whole[6], vtkIdType count);
-  std::string DescribeParameters() const;
 
   int GateType = Value;
   double GateRange[2] = { 0, 1 };

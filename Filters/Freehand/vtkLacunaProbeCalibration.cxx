@@ -7,14 +7,10 @@
 #include "vtkFieldData.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
-#include "vtkInformationVector.h"
 #include "vtkLacunaCalibrationOutputs.h"
 #include "vtkLacunaCalibrationPicks.h"
 #include "vtkLacunaCalibrationReport.h"
-#include "vtkLacunaExecution.h"
 #include "vtkLacunaFieldData.h"
-#include "vtkLacunaProvenance.h"
-#include "vtkLacunaRequest.h"
 #include "vtkLacunaTrackedSlices.h"
 #include "vtkLacunaVolumeDirection.h"
 #include "vtkNew.h"
@@ -123,6 +119,7 @@ vtkStandardNewMacro(vtkLacunaProbeCalibration);
 //------------------------------------------------------------------------------
 vtkLacunaProbeCalibration::vtkLacunaProbeCalibration()
 {
+  this->TakesEmpty = true; // an error
   this->SetNumberOfInputPorts(2);
   this->SetNumberOfOutputPorts(5);
 }
@@ -170,49 +167,37 @@ void vtkLacunaProbeCalibration::SetWireRanges(const char* ranges)
 }
 
 //------------------------------------------------------------------------------
-int vtkLacunaProbeCalibration::RequestInformation(
-  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
+void vtkLacunaProbeCalibration::Announce(const lacuna::Ports& ports)
 {
-  return vtkLacunaExecution::RunInformation(this, outputs,
-    [&]
-    {
-      // The map of expected errors has a grid of its own; a request in that of the slices would never be
-      // met and calculate everything anew each time.
-      vtkInformation* slices = inputs[0]->GetInformationObject(0);
-      int extent[6] = { 0, -1, 0, -1, 0, -1 };
-      double origin[3] = { 0, 0, 0 }, spacing[3] = { 1, 1, 1 };
-      if (slices->Has(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT()))
-      {
-        slices->Get(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), extent);
-      }
-      if (slices->Has(vtkDataObject::ORIGIN()))
-      {
-        slices->Get(vtkDataObject::ORIGIN(), origin);
-      }
-      if (slices->Has(vtkDataObject::SPACING()))
-      {
-        slices->Get(vtkDataObject::SPACING(), spacing);
-      }
-      const vtkLacunaCalibrationOutputs::ErrorMapGrid grid(extent, origin, spacing);
-      vtkInformation* map = outputs->GetInformationObject(3);
-      map->Set(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), grid.Extent, 6);
-      map->Set(vtkDataObject::ORIGIN(), grid.Origin, 3);
-      map->Set(vtkDataObject::SPACING(), grid.Spacing, 3);
-      vtkLacunaVolumeDirection::AnnounceAlongAxes(map);
-      vtkDataObject::SetPointDataActiveScalarInfo(map, VTK_DOUBLE, 1);
-    });
-}
-
-//------------------------------------------------------------------------------
-int vtkLacunaProbeCalibration::RequestUpdateExtent(
-  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
-{
-  if (vtkInformation* table = inputs[1]->GetInformationObject(0))
+  for (int port = 0; port < this->GetNumberOfOutputPorts(); ++port)
   {
-    vtkLacunaRequest::OnePiece(table);
+    ports.GetOutputInformation(port)->Remove(
+      vtkAlgorithm::CAN_PRODUCE_SUB_EXTENT()); // it takes a moment
   }
-  vtkLacunaRequest::Whole(this, inputs[0]->GetInformationObject(0), outputs);
-  return 1;
+  // The map of expected errors has a grid of its own; a request in that of the slices would never be
+  // met and calculate everything anew each time.
+  vtkInformation* slices = ports.GetInputInformation();
+  int extent[6] = { 0, -1, 0, -1, 0, -1 };
+  double origin[3] = { 0, 0, 0 }, spacing[3] = { 1, 1, 1 };
+  if (slices->Has(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT()))
+  {
+    slices->Get(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), extent);
+  }
+  if (slices->Has(vtkDataObject::ORIGIN()))
+  {
+    slices->Get(vtkDataObject::ORIGIN(), origin);
+  }
+  if (slices->Has(vtkDataObject::SPACING()))
+  {
+    slices->Get(vtkDataObject::SPACING(), spacing);
+  }
+  const vtkLacunaCalibrationOutputs::ErrorMapGrid grid(extent, origin, spacing);
+  vtkInformation* map = ports.GetOutputInformation(3);
+  map->Set(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), grid.Extent, 6);
+  map->Set(vtkDataObject::ORIGIN(), grid.Origin, 3);
+  map->Set(vtkDataObject::SPACING(), grid.Spacing, 3);
+  vtkLacunaVolumeDirection::AnnounceAlongAxes(map);
+  vtkDataObject::SetPointDataActiveScalarInfo(map, VTK_DOUBLE, 1);
 }
 
 //------------------------------------------------------------------------------
@@ -286,173 +271,162 @@ std::vector<vtkLacunaCalibrationPick> vtkLacunaProbeCalibration::FindPicks(
 }
 
 //------------------------------------------------------------------------------
-int vtkLacunaProbeCalibration::RequestData(
-  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
+void vtkLacunaProbeCalibration::Make(const lacuna::Ports& ports, vtkLacunaExecution& execution)
 {
-  if (!vtkLacunaRequest::IsWanted(outputs))
+  auto* slices = ports.GetInput<vtkImageData>();
+  auto* given = ports.GetInput<vtkDataObject>(1);
+  if (slices->GetNumberOfPoints() == 0)
   {
-    return 1; // an empty part
+    throw std::runtime_error("the stack of slices is empty");
   }
-  return vtkLacunaExecution::Run(this, outputs,
-    [&](vtkLacunaExecution& execution)
+  const bool pivot = this->Method == StylusPivot;
+  const char* array = pivot && slices->GetFieldData()->HasArray(vtkLacunaProbePoses::StylusName)
+    ? vtkLacunaProbePoses::StylusName
+    : vtkLacunaProbePoses::ArrayName;
+  const vtkLacunaProbePoses poses(slices, array);
+  std::vector<std::string> advice;
+  const Picks picks = this->FindPicks(execution, slices, given, poses, advice);
+  if (!pivot && !this->EstimateScale && this->PixelSpacing == 0)
+  {
+    throw std::runtime_error("PixelSpacing is 0: give the mm from pixel to pixel (see the depth "
+                             "scale of the scanner), or set EstimateScale");
+  }
+
+  lacuna::ProbeCalibrationOptions options;
+  if (!pivot)
+  {
+    options.PixelSpacing = { this->PixelSpacing,
+      this->RowSpacing == 0 ? this->PixelSpacing : this->RowSpacing };
+    options.EstimateScale = this->EstimateScale;
+  }
+  options.OutlierLimit = this->OutlierLimit;
+  std::vector<lacuna::CalibrationPick> kernelPicks;
+  for (const vtkLacunaCalibrationPick& pick : picks)
+  {
+    kernelPicks.push_back(pick.Pick);
+  }
+  const lacuna::ProbeCalibration found = SolveOrTell(kernelPicks, options, advice);
+  vtkLacunaCalibrationReport::Image image;
+  image.Size = pivot ? lacuna::Vec2{ 0, 0 } : GetSize(slices);
+  image.EstimateScale = options.EstimateScale;
+  image.ExpectedRatio =
+    this->PixelSpacing > 0 && this->RowSpacing > 0 ? this->RowSpacing / this->PixelSpacing : 1;
+  for (const lacuna::Vec2& corner : GetCorners(slices))
+  {
+    image.ExpectedError =
+      std::max(image.ExpectedError, found.GetExpectedError(pivot ? lacuna::Vec2{ 0, 0 } : corner));
+  }
+  const vtkLacunaCalibrationReport report(found, picks, image);
+  const std::vector<std::string> more = report.GetAdvice();
+  advice.insert(advice.begin(), more.begin(), more.end());
+  // Each rank has the slices calibrated; all else is there once.
+  const bool first = ports.IsFirst();
+  for (const std::string& sentence : advice)
+  {
+    if (first)
     {
-      vtkImageData* slices = vtkImageData::GetData(inputs[0]);
-      vtkDataObject* given = vtkDataObject::GetData(inputs[1]);
-      if (slices->GetNumberOfPoints() == 0)
-      {
-        throw std::runtime_error("the stack of slices is empty");
-      }
-      const bool pivot = this->Method == StylusPivot;
-      const char* array = pivot && slices->GetFieldData()->HasArray(vtkLacunaProbePoses::StylusName)
-        ? vtkLacunaProbePoses::StylusName
-        : vtkLacunaProbePoses::ArrayName;
-      const vtkLacunaProbePoses poses(slices, array);
-      std::vector<std::string> advice;
-      const Picks picks = this->FindPicks(execution, slices, given, poses, advice);
-      if (!pivot && !this->EstimateScale && this->PixelSpacing == 0)
-      {
-        throw std::runtime_error(
-          "PixelSpacing is 0: give the mm from pixel to pixel (see the depth "
-          "scale of the scanner), or set EstimateScale");
-      }
+      vtkWarningMacro(<< lacuna::ToPrintable(sentence));
+    }
+  }
 
-      lacuna::ProbeCalibrationOptions options;
-      if (!pivot)
-      {
-        options.PixelSpacing = { this->PixelSpacing,
-          this->RowSpacing == 0 ? this->PixelSpacing : this->RowSpacing };
-        options.EstimateScale = this->EstimateScale;
-      }
-      options.OutlierLimit = this->OutlierLimit;
-      std::vector<lacuna::CalibrationPick> kernelPicks;
-      for (const vtkLacunaCalibrationPick& pick : picks)
-      {
-        kernelPicks.push_back(pick.Pick);
-      }
-      const lacuna::ProbeCalibration found = SolveOrTell(kernelPicks, options, advice);
-      vtkLacunaCalibrationReport::Image image;
-      image.Size = pivot ? lacuna::Vec2{ 0, 0 } : GetSize(slices);
-      image.EstimateScale = options.EstimateScale;
-      image.ExpectedRatio =
-        this->PixelSpacing > 0 && this->RowSpacing > 0 ? this->RowSpacing / this->PixelSpacing : 1;
-      for (const lacuna::Vec2& corner : GetCorners(slices))
-      {
-        image.ExpectedError = std::max(
-          image.ExpectedError, found.GetExpectedError(pivot ? lacuna::Vec2{ 0, 0 } : corner));
-      }
-      const vtkLacunaCalibrationReport report(found, picks, image);
-      const std::vector<std::string> more = report.GetAdvice();
-      advice.insert(advice.begin(), more.begin(), more.end());
-      // Each rank has the slices calibrated; all else is there once.
-      const bool first = vtkLacunaRequest::IsFirst(outputs);
-      for (const std::string& sentence : advice)
-      {
-        if (first)
-        {
-          vtkWarningMacro(<< lacuna::ToPrintable(sentence));
-        }
-      }
+  auto* calibrated = ports.GetOutput<vtkImageData>(0);
+  calibrated->ShallowCopy(slices);
+  if (pivot)
+  {
+    const lacuna::Vec3 tip = found.ImageToProbe.Column(3);
+    vtkLacunaFieldData::Set(calibrated, "StylusTip", { tip[0], tip[1], tip[2] }, 3);
+  }
+  else
+  {
+    std::vector<lacuna::Matrix4> imageToReference;
+    for (vtkIdType i = 0; i < poses.GetCount(); ++i)
+    {
+      imageToReference.push_back(poses.Get(i) * found.ImageToProbe);
+    }
+    vtkLacunaFieldData::SetMatrices(
+      calibrated, vtkLacunaTrackedSlices::ImageToReferenceName, imageToReference);
+    vtkLacunaFieldData::SetMatrices(
+      calibrated, vtkLacunaTrackedSlices::ImageToProbeName, { found.ImageToProbe });
+  }
+  auto* residuals = ports.GetOutput<vtkTable>(1);
+  auto* picture = ports.GetOutput<vtkPolyData>(2);
+  auto* map = ports.GetOutput<vtkImageData>(3);
+  auto* marks = ports.GetOutput<vtkPolyData>(4);
+  vtkLacunaCalibrationOutputs::FillErrorMap(slices, found, map);
+  if (first)
+  {
+    vtkLacunaCalibrationOutputs::FillTable(picks, found, residuals);
+    vtkLacunaCalibrationOutputs::FillPhantom(picks, found, picture);
+    vtkLacunaCalibrationOutputs::FillSlices(picks, found, marks);
+  }
 
-      vtkImageData* calibrated = vtkImageData::GetData(outputs, 0);
-      calibrated->ShallowCopy(slices);
-      if (pivot)
+  const lacuna::Vec3 angles = found.GetAngles();
+  vtkNew<vtkStringArray> sentences;
+  sentences->SetName("Advice");
+  for (const std::string& sentence : advice)
+  {
+    sentences->InsertNextValue(sentence);
+  }
+  for (vtkDataObject* output :
+    std::initializer_list<vtkDataObject*>{ calibrated, residuals, picture, map, marks })
+  {
+    if (!pivot)
+    {
+      vtkLacunaFieldData::Set(
+        output, "PixelSpacing", { found.PixelSpacing[0], found.PixelSpacing[1] }, 2);
+      vtkLacunaFieldData::Set(output, "ImageAngles", { angles[0], angles[1], angles[2] }, 3);
+    }
+    vtkLacunaFieldData::Set(output, "CalibrationRms", { found.Rms }, 1);
+    vtkLacunaFieldData::Set(output, "CalibrationSpread", { found.Spread }, 1);
+    vtkLacunaFieldData::Set(output, "ExpectedError", { image.ExpectedError }, 1);
+    vtkLacunaFieldData::Set(output, "Views", { static_cast<double>(found.Views) }, 1);
+    vtkLacunaFieldData::Set(output, "Condition", { found.Condition }, 1);
+    vtkLacunaFieldData::Set(output, "RunnerUpRms", { found.RunnerUpRms }, 1);
+    output->GetFieldData()->AddArray(sentences);
+  }
+  if (first && !this->OutputFileName.empty())
+  {
+    const char* from = pivot ? "StylusTip" : "Image";
+    const std::string frame = array;
+    const std::string to = frame.substr(0, frame.find("ToTracker"));
+    std::string refusal = report.GetRefusal();
+    refusal += refusal.empty() ? "" : ". Look at Advice";
+    if (refusal.empty() && !vtkLacunaCalibrationReport::MayReplace(this->OutputFileName, from, to))
+    {
+      refusal = "it holds something else, or more, than Probe Calibration wrote for '" +
+        std::string(from) + "' to '" + to + "'. Set another OutputFileName";
+    }
+    try
+    {
+      if (refusal.empty())
       {
-        const lacuna::Vec3 tip = found.ImageToProbe.Column(3);
-        vtkLacunaFieldData::Set(calibrated, "StylusTip", { tip[0], tip[1], tip[2] }, 3);
+        report.Write(this->OutputFileName, from, to, advice);
       }
-      else
-      {
-        std::vector<lacuna::Matrix4> imageToReference;
-        for (vtkIdType i = 0; i < poses.GetCount(); ++i)
-        {
-          imageToReference.push_back(poses.Get(i) * found.ImageToProbe);
-        }
-        vtkLacunaFieldData::SetMatrices(
-          calibrated, vtkLacunaTrackedSlices::ImageToReferenceName, imageToReference);
-        vtkLacunaFieldData::SetMatrices(
-          calibrated, vtkLacunaTrackedSlices::ImageToProbeName, { found.ImageToProbe });
-      }
-      vtkTable* residuals = vtkTable::GetData(outputs, 1);
-      vtkPolyData* picture = vtkPolyData::GetData(outputs, 2);
-      vtkImageData* map = vtkImageData::GetData(outputs, 3);
-      vtkPolyData* marks = vtkPolyData::GetData(outputs, 4);
-      vtkLacunaCalibrationOutputs::FillErrorMap(slices, found, map);
-      if (first)
-      {
-        vtkLacunaCalibrationOutputs::FillTable(picks, found, residuals);
-        vtkLacunaCalibrationOutputs::FillPhantom(picks, found, picture);
-        vtkLacunaCalibrationOutputs::FillSlices(picks, found, marks);
-      }
+    }
+    catch (const lacuna::FileError& e)
+    {
+      refusal = e.what(); // the outputs are there all the same
+    }
+    if (!refusal.empty())
+    {
+      vtkErrorMacro(<< lacuna::ToPrintable("'" + std::string(this->OutputFileName) +
+                      "' is not written, and kept if it is there: " + refusal));
+    }
+  }
+}
 
-      const lacuna::Vec3 angles = found.GetAngles();
-      vtkNew<vtkStringArray> sentences;
-      sentences->SetName("Advice");
-      for (const std::string& sentence : advice)
-      {
-        sentences->InsertNextValue(sentence);
-      }
-      lacuna::ParameterText parameters;
-      parameters.Add("Method", this->Method)
-        .Add("PixelSpacing", this->PixelSpacing)
-        .Add("RowSpacing", this->RowSpacing)
-        .Add("EstimateScale", this->EstimateScale)
-        .Add("OutlierLimit", this->OutlierLimit)
-        .Add("WireRanges", this->WireRanges)
-        .Add("FindSpots", this->FindSpots);
-      for (vtkDataObject* output :
-        std::initializer_list<vtkDataObject*>{ calibrated, residuals, picture, map, marks })
-      {
-        if (!pivot)
-        {
-          vtkLacunaFieldData::Set(
-            output, "PixelSpacing", { found.PixelSpacing[0], found.PixelSpacing[1] }, 2);
-          vtkLacunaFieldData::Set(output, "ImageAngles", { angles[0], angles[1], angles[2] }, 3);
-        }
-        vtkLacunaFieldData::Set(output, "CalibrationRms", { found.Rms }, 1);
-        vtkLacunaFieldData::Set(output, "CalibrationSpread", { found.Spread }, 1);
-        vtkLacunaFieldData::Set(output, "ExpectedError", { image.ExpectedError }, 1);
-        vtkLacunaFieldData::Set(output, "Views", { static_cast<double>(found.Views) }, 1);
-        vtkLacunaFieldData::Set(output, "Condition", { found.Condition }, 1);
-        vtkLacunaFieldData::Set(output, "RunnerUpRms", { found.RunnerUpRms }, 1);
-        output->GetFieldData()->AddArray(sentences);
-        std::vector<vtkDataObject*> sources{ slices };
-        if (given)
-        {
-          sources.push_back(given);
-        }
-        vtkLacunaProvenance::Record(output, this, sources, parameters.Get());
-      }
-      if (first && !this->OutputFileName.empty())
-      {
-        const char* from = pivot ? "StylusTip" : "Image";
-        const std::string frame = array;
-        const std::string to = frame.substr(0, frame.find("ToTracker"));
-        std::string refusal = report.GetRefusal();
-        refusal += refusal.empty() ? "" : ". Look at Advice";
-        if (refusal.empty() &&
-          !vtkLacunaCalibrationReport::MayReplace(this->OutputFileName, from, to))
-        {
-          refusal = "it holds something else, or more, than Probe Calibration wrote for '" +
-            std::string(from) + "' to '" + to + "'. Set another OutputFileName";
-        }
-        try
-        {
-          if (refusal.empty())
-          {
-            report.Write(this->OutputFileName, from, to, advice);
-          }
-        }
-        catch (const lacuna::FileError& e)
-        {
-          refusal = e.what(); // the outputs are there all the same
-        }
-        if (!refusal.empty())
-        {
-          vtkErrorMacro(<< lacuna::ToPrintable("'" + std::string(this->OutputFileName) +
-                          "' is not written, and kept if it is there: " + refusal));
-        }
-      }
-    });
+//------------------------------------------------------------------------------
+std::string vtkLacunaProbeCalibration::Parameters(int) const
+{
+  return lacuna::ParameterText()
+    .Add("Method", this->Method)
+    .Add("PixelSpacing", this->PixelSpacing)
+    .Add("RowSpacing", this->RowSpacing)
+    .Add("EstimateScale", this->EstimateScale)
+    .Add("OutlierLimit", this->OutlierLimit)
+    .Add("WireRanges", this->WireRanges)
+    .Add("FindSpots", this->FindSpots)
+    .Get();
 }
 
 //------------------------------------------------------------------------------

@@ -51,6 +51,7 @@
 #define vtkLacunaProbeCalibration_h
 
 #include "vtkImageAlgorithm.h"
+#include "vtkLacunaAlgorithm.h"
 #include "vtkLacunaFiltersFreehandModule.h" // for export macro
 
 #include <string>
@@ -60,7 +61,8 @@ class vtkLacunaExecution;
 class vtkLacunaProbePoses;
 struct vtkLacunaCalibrationPick;
 
-class VTKLACUNAFILTERSFREEHAND_EXPORT vtkLacunaProbeCalibration : public vtkImageAlgorithm
+class VTKLACUNAFILTERSFREEHAND_EXPORT vtkLacunaProbeCalibration
+  : public vtkLacunaAlgorithmOf(vtkImageAlgorithm)
 {
 public:
   static vtkLacunaProbeCalibration* New();
@@ -148,12 +150,9 @@ protected:
 
   int FillInputPortInformation(int port, vtkInformation* info) override;
   int FillOutputPortInformation(int port, vtkInformation* info) override;
-  int RequestInformation(
-    vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
-  int RequestUpdateExtent(
-    vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
-  int RequestData(
-    vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
+  void Announce(const lacuna::Ports& ports) override;
+  void Make(const lacuna::Ports& ports, vtkLacunaExecution& execution) override;
+  std::string Parameters(int port) const override;
 
 private:
   // Given or found; what there is to say of them is added to advice. Throws.

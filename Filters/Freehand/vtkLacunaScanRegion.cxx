@@ -10,12 +10,8 @@
 #include "vtkDataArray.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
-#include "vtkInformationVector.h"
 #include "vtkIntArray.h"
-#include "vtkLacunaExecution.h"
 #include "vtkLacunaFieldData.h"
-#include "vtkLacunaProvenance.h"
-#include "vtkLacunaRequest.h"
 #include "vtkLacunaScalarType.h"
 #include "vtkLacunaStackPixels.h"
 #include "vtkNew.h"
@@ -305,6 +301,9 @@ vtkStandardNewMacro(vtkLacunaScanRegion);
 //------------------------------------------------------------------------------
 vtkLacunaScanRegion::vtkLacunaScanRegion()
 {
+  this->Sharing = lacuna::Share::FirstRank;
+  this->TakesEmpty = true; // an error
+  this->TakesBlocks = true;
   this->SetNumberOfOutputPorts(2);
 }
 
@@ -323,109 +322,96 @@ int vtkLacunaScanRegion::FillOutputPortInformation(int port, vtkInformation* inf
 }
 
 //------------------------------------------------------------------------------
-int vtkLacunaScanRegion::RequestUpdateExtent(
-  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
+void vtkLacunaScanRegion::Make(const lacuna::Ports& ports, vtkLacunaExecution& execution)
 {
-  vtkLacunaRequest::Whole(this, inputs[0]->GetInformationObject(0), outputs);
-  return 1;
+  if (!(this->PixelAspect > 0) || !std::isfinite(this->PixelAspect))
+  {
+    throw std::runtime_error("PixelAspect is " + lacuna::FormatNumber(this->PixelAspect) +
+      "; height by width of a pixel is above 0");
+  }
+  if (!(this->TickLength >= 0) || !std::isfinite(this->TickLength))
+  {
+    throw std::runtime_error("TickLength is " + lacuna::FormatNumber(this->TickLength) +
+      "; mm from tick to tick are above 0, or 0 when they are not known");
+  }
+  auto* image = ports.GetInput<vtkImageData>();
+  if (image->GetNumberOfPoints() == 0)
+  {
+    throw std::runtime_error("the image is empty");
+  }
+  Frames frames(image);
+  const lacuna::Vec2 pixel{ 1, this->PixelAspect };
+  lacuna::ScanRegion region = lacuna::FindScanRegion(frames.Images, pixel);
+  if (!region.IsFound)
+  {
+    if (frames.GetNumberOfSlices() < 3)
+    {
+      throw std::runtime_error(region.Text);
+    }
+    region = Propose(frames, pixel, region.Text, execution);
+  }
+  if (region.Confidence < DoubtfulConfidence)
+  {
+    vtkWarningMacro(<< "the scan region is doubtful (confidence "
+                    << std::lround(100 * region.Confidence) << " %; " << region.Text
+                    << "): look at the second output over the image");
+  }
+  const lacuna::DepthRuler ruler = lacuna::FindDepthRuler(frames.Images, region.Fan, pixel);
+
+  Report report;
+  AddRegion(report, region, frames);
+  const lacuna::TickRow* rows[2] = { &ruler.Depth, &ruler.Width };
+  static const char* const names[2] = { "DepthTick", "WidthTick" };
+  Picture picture(frames);
+  picture.AddRegion(region.Fan, this->PixelAspect);
+  for (int r = 0; r < 2; ++r)
+  {
+    if (rows[r]->IsFound)
+    {
+      report.Add(names[r], { rows[r]->Pitch, rows[r]->PitchError }, 1e-4, rows[r]->Text.c_str());
+      picture.AddTicks(*rows[r], r == 0);
+    }
+    else
+    {
+      report.AddText(names[r], "not found", rows[r]->Text);
+    }
+  }
+  if (ruler.Depth.IsFound && ruler.Width.IsFound)
+  {
+    report.Add("PixelAspect", { ruler.Width.Pitch / ruler.Depth.Pitch }, 1e-4,
+      "height by width of a pixel, if a tick is as many mm in both rulers");
+  }
+  if (this->TickLength > 0 && !ruler.Depth.IsFound)
+  {
+    vtkWarningMacro(<< "TickLength is of no use: " << ruler.Depth.Text);
+  }
+  else if (this->TickLength > 0)
+  {
+    const double height = ruler.Depth.GetSpacing(this->TickLength);
+    const double width = height / this->PixelAspect;
+    report.Add("PixelSpacing", { width, height }, 1e-5,
+      "mm a column and a row, by TickLength and PixelAspect");
+    if (region.Fan.IsSector)
+    {
+      const lacuna::Vec2& radii = region.Fan.Sector.Radii;
+      report.Add("FanRadii", { width * radii[0], width * radii[1] }, 1e-3, "mm");
+    }
+  }
+  auto* table = ports.GetOutput<vtkTable>();
+  auto* overlay = ports.GetOutput<vtkPolyData>(1);
+  report.Put(table);
+  picture.Put(overlay);
+  report.PutFields(table);
+  report.PutFields(overlay);
 }
 
 //------------------------------------------------------------------------------
-int vtkLacunaScanRegion::RequestData(
-  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
+std::string vtkLacunaScanRegion::Parameters(int) const
 {
-  const bool isWanted = vtkLacunaRequest::IsWanted(outputs); // it is made in one piece
-  return vtkLacunaExecution::RunAgreed(this, outputs, isWanted,
-    [&](vtkLacunaExecution& execution)
-    {
-      if (!(this->PixelAspect > 0) || !std::isfinite(this->PixelAspect))
-      {
-        throw std::runtime_error("PixelAspect is " + lacuna::FormatNumber(this->PixelAspect) +
-          "; height by width of a pixel is above 0");
-      }
-      if (!(this->TickLength >= 0) || !std::isfinite(this->TickLength))
-      {
-        throw std::runtime_error("TickLength is " + lacuna::FormatNumber(this->TickLength) +
-          "; mm from tick to tick are above 0, or 0 when they are not known");
-      }
-      vtkImageData* image = vtkImageData::GetData(inputs[0]);
-      if (image->GetNumberOfPoints() == 0)
-      {
-        throw std::runtime_error("the image is empty");
-      }
-      Frames frames(image);
-      const lacuna::Vec2 pixel{ 1, this->PixelAspect };
-      lacuna::ScanRegion region = lacuna::FindScanRegion(frames.Images, pixel);
-      if (!region.IsFound)
-      {
-        if (frames.GetNumberOfSlices() < 3)
-        {
-          throw std::runtime_error(region.Text);
-        }
-        region = Propose(frames, pixel, region.Text, execution);
-      }
-      if (region.Confidence < DoubtfulConfidence)
-      {
-        vtkWarningMacro(<< "the scan region is doubtful (confidence "
-                        << std::lround(100 * region.Confidence) << " %; " << region.Text
-                        << "): look at the second output over the image");
-      }
-      const lacuna::DepthRuler ruler = lacuna::FindDepthRuler(frames.Images, region.Fan, pixel);
-
-      Report report;
-      AddRegion(report, region, frames);
-      const lacuna::TickRow* rows[2] = { &ruler.Depth, &ruler.Width };
-      static const char* const names[2] = { "DepthTick", "WidthTick" };
-      Picture picture(frames);
-      picture.AddRegion(region.Fan, this->PixelAspect);
-      for (int r = 0; r < 2; ++r)
-      {
-        if (rows[r]->IsFound)
-        {
-          report.Add(
-            names[r], { rows[r]->Pitch, rows[r]->PitchError }, 1e-4, rows[r]->Text.c_str());
-          picture.AddTicks(*rows[r], r == 0);
-        }
-        else
-        {
-          report.AddText(names[r], "not found", rows[r]->Text);
-        }
-      }
-      if (ruler.Depth.IsFound && ruler.Width.IsFound)
-      {
-        report.Add("PixelAspect", { ruler.Width.Pitch / ruler.Depth.Pitch }, 1e-4,
-          "height by width of a pixel, if a tick is as many mm in both rulers");
-      }
-      if (this->TickLength > 0 && !ruler.Depth.IsFound)
-      {
-        vtkWarningMacro(<< "TickLength is of no use: " << ruler.Depth.Text);
-      }
-      else if (this->TickLength > 0)
-      {
-        const double height = ruler.Depth.GetSpacing(this->TickLength);
-        const double width = height / this->PixelAspect;
-        report.Add("PixelSpacing", { width, height }, 1e-5,
-          "mm a column and a row, by TickLength and PixelAspect");
-        if (region.Fan.IsSector)
-        {
-          const lacuna::Vec2& radii = region.Fan.Sector.Radii;
-          report.Add("FanRadii", { width * radii[0], width * radii[1] }, 1e-3, "mm");
-        }
-      }
-      vtkTable* table = vtkTable::GetData(outputs, 0);
-      vtkPolyData* overlay = vtkPolyData::GetData(outputs, 1);
-      report.Put(table);
-      picture.Put(overlay);
-      const std::string parameters = lacuna::ParameterText()
-                                       .Add("TickLength", this->TickLength)
-                                       .Add("PixelAspect", this->PixelAspect)
-                                       .Get();
-      for (vtkDataObject* output : std::initializer_list<vtkDataObject*>{ table, overlay })
-      {
-        report.PutFields(output);
-        vtkLacunaProvenance::Record(output, this, { image }, parameters);
-      }
-    });
+  return lacuna::ParameterText()
+    .Add("TickLength", this->TickLength)
+    .Add("PixelAspect", this->PixelAspect)
+    .Get();
 }
 
 //------------------------------------------------------------------------------

@@ -34,17 +34,17 @@
 #ifndef vtkLacunaScanRegion_h
 #define vtkLacunaScanRegion_h
 
+#include "vtkLacunaAlgorithm.h"
 #include "vtkLacunaFiltersFreehandModule.h" // for export macro
-#include "vtkLacunaVersionCompat.h"         // for stops
 #include "vtkTableAlgorithm.h"
 
-class VTKLACUNAFILTERSFREEHAND_EXPORT vtkLacunaScanRegion : public vtkTableAlgorithm
+class VTKLACUNAFILTERSFREEHAND_EXPORT vtkLacunaScanRegion
+  : public vtkLacunaAlgorithmOf(vtkTableAlgorithm)
 {
 public:
   static vtkLacunaScanRegion* New();
   vtkTypeMacro(vtkLacunaScanRegion, vtkTableAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
-  vtkLacunaKeepTimeAtStops();
 
   ///@{
   /// mm from tick to tick of the ruler, of the finest ticks; 0: not known. Default: 0.
@@ -65,10 +65,8 @@ protected:
 
   int FillInputPortInformation(int port, vtkInformation* info) override;
   int FillOutputPortInformation(int port, vtkInformation* info) override;
-  int RequestUpdateExtent(
-    vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
-  int RequestData(
-    vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
+  void Make(const lacuna::Ports& ports, vtkLacunaExecution& execution) override;
+  std::string Parameters(int port) const override;
 
 private:
   vtkLacunaScanRegion(const vtkLacunaScanRegion&) = delete;

@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkLacunaSliceAlgorithm.h"
 
-#include "vtkAlgorithmOutput.h"
 #include "vtkFieldData.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
 #include "vtkIntArray.h"
 #include "vtkLacunaFieldData.h"
-#include "vtkLacunaRequest.h"
 #include "vtkLacunaSliceImages.h"
 #include "vtkLacunaSliceStream.h"
 #include "vtkNew.h"
@@ -47,37 +45,19 @@ int vtkLacunaSliceAlgorithm::ProcessRequest(
 }
 
 //------------------------------------------------------------------------------
-int vtkLacunaSliceAlgorithm::RequestUpdateExtent(
-  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
+void vtkLacunaSliceAlgorithm::Ask(const lacuna::Ports& ports)
 {
-  this->AskForSlices(inputs, outputs);
-  return 1;
-}
-
-//------------------------------------------------------------------------------
-void vtkLacunaSliceAlgorithm::AskForSlices(
-  vtkInformationVector** inputs, vtkInformationVector* outputs)
-{
-  for (int i = 0; i < inputs[0]->GetNumberOfInformationObjects(); ++i)
-  {
-    vtkInformation* info = inputs[0]->GetInformationObject(i);
-    if (!this->TakesStreams() || !vtkLacunaSliceStream::RequestFields(this, info, 0, i))
-    {
-      vtkLacunaRequest::Whole(this, info, outputs);
-    }
-  }
-}
-
-//------------------------------------------------------------------------------
-void vtkLacunaSliceAlgorithm::UpdateSlices(vtkInformationVector** inputs)
-{
-  // Downstream divides the whole extent into pieces before any data are asked for: so the inputs
-  // must be executed now. When they are up to date, as they usually are, this does nothing.
-  this->AskForSlices(inputs, nullptr);
   for (int i = 0; i < this->GetNumberOfInputConnections(0); ++i)
   {
-    vtkAlgorithmOutput* connection = this->GetInputConnection(0, i);
-    connection->GetProducer()->Update(connection->GetIndex());
+    vtkInformation* info = ports.GetInputInformation(0, i);
+    if (this->TakesStreams() && vtkLacunaSliceStream::Find(this, 0, i))
+    {
+      this->AskFor(info, vtkLacunaSliceStream::GetFirstSlice(info)); // for the field data
+    }
+    else
+    {
+      this->AskForWhole(info);
+    }
   }
 }
 

@@ -25,6 +25,7 @@
 #define vtkLacunaSliceAlgorithm_h
 
 #include "vtkImageAlgorithm.h"
+#include "vtkLacunaAlgorithm.h"
 #include "vtkLacunaFiltersFreehandModule.h" // for export macro
 
 #include <map>
@@ -34,7 +35,8 @@
 
 struct vtkLacunaSliceImages;
 
-class VTKLACUNAFILTERSFREEHAND_EXPORT vtkLacunaSliceAlgorithm : public vtkImageAlgorithm
+class VTKLACUNAFILTERSFREEHAND_EXPORT vtkLacunaSliceAlgorithm
+  : public vtkLacunaAlgorithmOf(vtkImageAlgorithm)
 {
 public:
   vtkAbstractTypeMacro(vtkLacunaSliceAlgorithm, vtkImageAlgorithm);
@@ -131,13 +133,10 @@ public:
     vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
 
 protected:
-  vtkLacunaSliceAlgorithm() = default;
+  vtkLacunaSliceAlgorithm() { this->TakesEmpty = true; } // of several inputs
   ~vtkLacunaSliceAlgorithm() override = default;
 
-  /// Asks for all of the inputs and updates them; for RequestInformation of subclasses, before anything else.
-  void UpdateSlices(vtkInformationVector** inputs);
-  int RequestUpdateExtent(
-    vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
+  void Ask(const lacuna::Ports& ports) override;
 
   /// Whether slices that are too many for the memory are taken from their stream; else what is made
   /// of a preview is a preview, and a warning says so. Default: no.
@@ -170,9 +169,6 @@ protected:
 private:
   vtkLacunaSliceAlgorithm(const vtkLacunaSliceAlgorithm&) = delete;
   void operator=(const vtkLacunaSliceAlgorithm&) = delete;
-
-  /// Of outputs, if they are wanted; null: they are.
-  void AskForSlices(vtkInformationVector** inputs, vtkInformationVector* outputs);
 
   std::set<std::string> KnownFacts;
   std::string SweepDescription;

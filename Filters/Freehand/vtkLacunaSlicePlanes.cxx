@@ -8,11 +8,7 @@
 #include "vtkFieldData.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
-#include "vtkInformationVector.h"
-#include "vtkLacunaExecution.h"
 #include "vtkLacunaFieldData.h"
-#include "vtkLacunaProvenance.h"
-#include "vtkLacunaRequest.h"
 #include "vtkLacunaSliceImages.h"
 #include "vtkLacunaSlicePlaneBuilder.h"
 #include "vtkLacunaTrackedSlices.h"
@@ -86,13 +82,19 @@ int vtkLacunaSlicePlanes::FillInputPortInformation(int, vtkInformation* info)
 }
 
 //------------------------------------------------------------------------------
-int vtkLacunaSlicePlanes::RequestUpdateExtent(
-  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
+vtkLacunaSlicePlanes::vtkLacunaSlicePlanes()
 {
-  vtkInformation* in = inputs[0]->GetInformationObject(0);
-  int extent[6];
-  in->Get(SDDP::WHOLE_EXTENT(), extent);
-  const Slab slab = GetSlab(in, outputs->GetInformationObject(0));
+  this->Sharing = lacuna::Share::Parts;
+  this->TakesBlocks = true;
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaSlicePlanes::Ask(const lacuna::Ports& ports)
+{
+  vtkInformation* in = ports.GetInputInformation();
+  std::array<int, 6> extent;
+  in->Get(SDDP::WHOLE_EXTENT(), extent.data());
+  const Slab slab = GetSlab(in, ports.GetOutputInformation());
   if (slab.First <= slab.Last)
   {
     extent[4] = slab.First;
@@ -102,60 +104,52 @@ int vtkLacunaSlicePlanes::RequestUpdateExtent(
   {
     extent[5] = extent[4]; // what the sweep is, is asked for even where no slice is wanted
   }
-  vtkLacunaRequest::Extent(this, in, extent);
-  return 1;
+  this->AskFor(in, extent);
 }
 
 //------------------------------------------------------------------------------
-int vtkLacunaSlicePlanes::RequestData(
-  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
+void vtkLacunaSlicePlanes::Make(const lacuna::Ports& ports, vtkLacunaExecution& execution)
 {
-  return vtkLacunaExecution::Run(this, outputs,
-    [&](vtkLacunaExecution& execution)
-    {
-      vtkInformation* in = inputs[0]->GetInformationObject(0);
-      vtkImageData* stack = vtkImageData::GetData(inputs[0]);
-      vtkPolyData* output = vtkPolyData::GetData(outputs);
-      output->GetFieldData()->Initialize(); // VTK passes the slices' own
-      int whole[6];
-      in->Get(SDDP::WHOLE_EXTENT(), whole);
-      const Slab slab = GetSlab(in, outputs->GetInformationObject(0));
-      if (stack->GetNumberOfPoints() == 0 || IsYetToCome(stack, slab))
-      {
-        return;
-      }
-      lacuna::RequireAtLeast(1, "Stride", this->Stride);
-      lacuna::RequireAtLeast(4, "MaximumNumberOfPoints", this->MaximumNumberOfPoints);
-      vtkLacunaSlicePlaneBuilder::Options options;
-      options.Stride = this->Stride;
-      options.Accuracy = { this->TranslationAccuracy, this->AngularAccuracy };
-      options.SpeedLimit = this->SpeedLimit;
-      options.OutlineOnly = this->OutlineOnly;
-      options.InvalidSlices = this->InvalidSlices;
-      options.KeepOutliers = this->BadPoses == vtkLacunaSliceAlgorithm::KeepOutliers;
-      options.MaximumNumberOfPoints = this->MaximumNumberOfPoints;
-      vtkLacunaSlicePlaneBuilder builder(stack, whole, slab.First, slab.Last, options);
-      this->CheckRequest(builder);
-      if (!builder.GetLeftOut().empty())
-      {
-        vtkWarningMacro(<< vtkLacunaSliceImages::DescribeLeftOut(builder.GetLeftOut()));
-      }
-      builder.Build(output, execution);
-      if (this->ColorBy == Speed)
-      {
-        output->GetCellData()->SetActiveScalars("Speed");
-        this->WarnOfSpeed(builder);
-      }
-      else
-      {
-        output->GetPointData()->SetActiveScalars(
-          this->ColorBy == RegistrationError ? "RegistrationError" : "Intensity");
-      }
-      vtkLacunaFieldData::Set(
-        output, "PixelStep", { static_cast<double>(builder.GetPixelStep()) }, 1);
-      vtkLacunaFieldData::Set(output, "SpeedLimit", { this->SpeedLimit }, 1);
-      vtkLacunaProvenance::Record(output, this, { stack }, this->DescribeParameters());
-    });
+  vtkInformation* in = ports.GetInputInformation();
+  auto* stack = ports.GetInput<vtkImageData>();
+  auto* output = ports.GetOutput<vtkPolyData>();
+  output->GetFieldData()->Initialize(); // VTK passes the slices' own
+  int whole[6];
+  in->Get(SDDP::WHOLE_EXTENT(), whole);
+  const Slab slab = GetSlab(in, ports.GetOutputInformation());
+  if (IsYetToCome(stack, slab))
+  {
+    return;
+  }
+  lacuna::RequireAtLeast(1, "Stride", this->Stride);
+  lacuna::RequireAtLeast(4, "MaximumNumberOfPoints", this->MaximumNumberOfPoints);
+  vtkLacunaSlicePlaneBuilder::Options options;
+  options.Stride = this->Stride;
+  options.Accuracy = { this->TranslationAccuracy, this->AngularAccuracy };
+  options.SpeedLimit = this->SpeedLimit;
+  options.OutlineOnly = this->OutlineOnly;
+  options.InvalidSlices = this->InvalidSlices;
+  options.KeepOutliers = this->BadPoses == vtkLacunaSliceAlgorithm::KeepOutliers;
+  options.MaximumNumberOfPoints = this->MaximumNumberOfPoints;
+  vtkLacunaSlicePlaneBuilder builder(stack, whole, slab.First, slab.Last, options);
+  this->CheckRequest(builder);
+  if (!builder.GetLeftOut().empty())
+  {
+    vtkWarningMacro(<< vtkLacunaSliceImages::DescribeLeftOut(builder.GetLeftOut()));
+  }
+  builder.Build(output, execution);
+  if (this->ColorBy == Speed)
+  {
+    output->GetCellData()->SetActiveScalars("Speed");
+    this->WarnOfSpeed(builder);
+  }
+  else
+  {
+    output->GetPointData()->SetActiveScalars(
+      this->ColorBy == RegistrationError ? "RegistrationError" : "Intensity");
+  }
+  vtkLacunaFieldData::Set(output, "PixelStep", { static_cast<double>(builder.GetPixelStep()) }, 1);
+  vtkLacunaFieldData::Set(output, "SpeedLimit", { this->SpeedLimit }, 1);
 }
 
 //------------------------------------------------------------------------------
@@ -232,7 +226,7 @@ void vtkLacunaSlicePlanes::CheckRequest(const vtkLacunaSlicePlaneBuilder& builde
 }
 
 //------------------------------------------------------------------------------
-std::string vtkLacunaSlicePlanes::DescribeParameters() const
+std::string vtkLacunaSlicePlanes::Parameters(int) const
 {
   constexpr std::array<const char*, 3> colorings{ "Intensity", "Speed", "RegistrationError" };
   constexpr std::array<const char*, 3> choices{ "LeaveOut", "Outline", "Show" };
@@ -254,5 +248,5 @@ std::string vtkLacunaSlicePlanes::DescribeParameters() const
 void vtkLacunaSlicePlanes::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
-  os << indent << "Parameters: " << this->DescribeParameters() << "\n";
+  os << indent << "Parameters: " << this->Parameters(0) << "\n";
 }

@@ -38,6 +38,7 @@
 #ifndef vtkLacunaSlicePlanes_h
 #define vtkLacunaSlicePlanes_h
 
+#include "vtkLacunaAlgorithm.h"
 #include "vtkLacunaFiltersFreehandModule.h" // for export macro
 #include "vtkLacunaSliceAlgorithm.h"        // for BadPoseRules
 #include "vtkPolyDataAlgorithm.h"
@@ -46,7 +47,8 @@
 
 class vtkLacunaSlicePlaneBuilder;
 
-class VTKLACUNAFILTERSFREEHAND_EXPORT vtkLacunaSlicePlanes : public vtkPolyDataAlgorithm
+class VTKLACUNAFILTERSFREEHAND_EXPORT vtkLacunaSlicePlanes
+  : public vtkLacunaAlgorithmOf(vtkPolyDataAlgorithm)
 {
 public:
   static vtkLacunaSlicePlanes* New();
@@ -127,14 +129,13 @@ public:
   ///@}
 
 protected:
-  vtkLacunaSlicePlanes() = default;
+  vtkLacunaSlicePlanes();
   ~vtkLacunaSlicePlanes() override = default;
 
   int FillInputPortInformation(int port, vtkInformation* info) override;
-  int RequestUpdateExtent(
-    vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
-  int RequestData(
-    vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
+  void Ask(const lacuna::Ports& ports) override;
+  void Make(const lacuna::Ports& ports, vtkLacunaExecution& execution) override;
+  std::string Parameters(int port) const override;
 
 private:
   vtkLacunaSlicePlanes(const vtkLacunaSlicePlanes&) = delete;
@@ -142,7 +143,6 @@ private:
 
   void WarnOfSpeed(const vtkLacunaSlicePlaneBuilder& builder);
   void CheckRequest(const vtkLacunaSlicePlaneBuilder& builder);
-  std::string DescribeParameters() const;
 
   int Stride = 1;
   int ColorBy = Intensity;

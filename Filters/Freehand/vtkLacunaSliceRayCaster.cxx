@@ -13,15 +13,10 @@
 #include "vtkFloatArray.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
-#include "vtkInformationVector.h"
 #include "vtkLacunaArrays.h"
 #include "vtkLacunaDepthMap.h"
-#include "vtkLacunaExecution.h"
 #include "vtkLacunaFieldData.h"
-#include "vtkLacunaInputs.h"
 #include "vtkLacunaProposedLevel.h"
-#include "vtkLacunaProvenance.h"
-#include "vtkLacunaRequest.h"
 #include "vtkLacunaSliceImages.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
@@ -66,9 +61,9 @@ class vtkLacunaSliceRayCaster::Plan
 {
 public:
   /// Throws std::exception with a text for the user.
-  Plan(vtkLacunaSliceRayCaster* self, vtkInformationVector* inputs)
+  Plan(vtkLacunaSliceRayCaster* self, const lacuna::Ports& ports)
   {
-    vtkImageData* stack = vtkImageData::GetData(inputs);
+    auto* stack = ports.GetInput<vtkImageData>();
     if (!stack || stack->GetNumberOfPoints() == 0)
     {
       return;
@@ -82,7 +77,7 @@ public:
       throw std::runtime_error("MaximumGap must be positive, or 0 for no limit");
     }
     vtkLacunaSliceSelection selection =
-      vtkLacunaSliceSelection::Make(self, inputs->GetInformationObject(0));
+      vtkLacunaSliceSelection::Make(self, ports.GetInputInformation());
     selection.HasSweepEnds = self->GapMethod == AutomaticGap;
     this->Images = std::make_unique<vtkLacunaSliceImages>(stack, selection);
     if (this->GetSlices().empty() && !this->IsMoreToCome())
@@ -220,92 +215,78 @@ vtkLacunaSliceRayCaster::vtkLacunaSliceRayCaster()
 vtkLacunaSliceRayCaster::~vtkLacunaSliceRayCaster() = default;
 
 //------------------------------------------------------------------------------
-int vtkLacunaSliceRayCaster::RequestInformation(
-  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
+void vtkLacunaSliceRayCaster::Announce(const lacuna::Ports& ports)
 {
-  return vtkLacunaExecution::RunInformation(this, outputs,
-    [&]
-    {
-      this->UpdateSlices(inputs);
-      vtkLacunaInputs::Check(this);
-      vtkInformation* info = outputs->GetInformationObject(0);
-      const Plan plan(this, inputs[0]);
-      if (plan.IsEmpty())
-      {
-        const int nothing[6] = { 0, -1, 0, -1, 0, -1 };
-        info->Set(SDDP::WHOLE_EXTENT(), nothing, 6);
-      }
-      else
-      {
-        vtkLacunaDepthMap::SetInformation(info, plan.Plane);
-      }
-      info->Set(SDDP::TIME_DEPENDENT_INFORMATION(), 1);
-    });
+  this->UpdateInput(ports);
+  vtkInformation* info = ports.GetOutputInformation();
+  const Plan plan(this, ports);
+  if (plan.IsEmpty())
+  {
+    const int nothing[6] = { 0, -1, 0, -1, 0, -1 };
+    info->Set(SDDP::WHOLE_EXTENT(), nothing, 6);
+  }
+  else
+  {
+    vtkLacunaDepthMap::SetInformation(info, plan.Plane);
+  }
+  info->Set(SDDP::TIME_DEPENDENT_INFORMATION(), 1);
 }
 
 //------------------------------------------------------------------------------
-int vtkLacunaSliceRayCaster::RequestData(
-  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
+void vtkLacunaSliceRayCaster::Make(const lacuna::Ports& ports, vtkLacunaExecution& execution)
 {
-  const bool isWanted = vtkLacunaRequest::IsWanted(outputs); // not an empty part
-  return vtkLacunaExecution::RunAgreed(this, outputs, isWanted,
-    [&](vtkLacunaExecution& execution)
-    {
-      vtkInformation* info = outputs->GetInformationObject(0);
-      vtkImageData* output = vtkImageData::GetData(outputs);
-      output->GetFieldData()->Initialize(); // VTK passes the slices' own
-      this->NumberOfCastSlices = 0;
-      const Plan plan(this, inputs[0]);
-      if (plan.IsEmpty())
-      {
-        output->Initialize();
-        return;
-      }
-      const lacuna::ImagePlane& plane = plan.Plane;
-      if (!IsAnnounced(info, plane))
-      {
-        throw vtkLacunaGridChanged(
-          "the slices have changed since the map was announced (a source that changes with "
-          "time?); set FocalPoint, PlaneOrigin, PixelSpacing and ImageSize, so that the map does "
-          "not depend on the slices");
-      }
-      int extent[6];
-      info->Get(SDDP::UPDATE_EXTENT(), extent);
-      output->SetExtent(extent);
-      vtkLacunaDepthMap::SetGeometry(output, plane);
-      const vtkIdType pixels = output->GetNumberOfPoints();
-      constexpr std::int64_t arrays = sizeof(double) + sizeof(char) + 3 * sizeof(float);
-      lacuna::RequireMemory("this part of the depth map",
-        static_cast<double>(pixels) *
-          static_cast<double>(arrays + lacuna::SliceRayCaster::GetBytesPerPixel()),
-        this->Kept->GetBytes());
-      vtkNew<vtkDoubleArray> depth;
-      depth->SetName(vtkLacunaDepthMap::DepthName);
-      vtkLacunaArrays::SetNumberOfTuples(depth, pixels);
-      vtkNew<vtkCharArray> mask;
-      mask->SetName(vtkLacunaDepthMap::MaskName);
-      vtkLacunaArrays::SetNumberOfTuples(mask, pixels);
-      vtkNew<vtkFloatArray> normals;
-      normals->SetName(vtkLacunaDepthMap::NormalsName);
-      normals->SetNumberOfComponents(3);
-      vtkLacunaArrays::SetNumberOfTuples(normals, pixels);
-      if (pixels > 0)
-      {
-        const std::array<int, 4> part{ extent[0], extent[1], extent[2], extent[3] };
-        this->NumberOfCastSlices =
-          static_cast<vtkIdType>(this->Kept->Update(this, plan, part, execution));
-        execution.SetStage(0.9, 1);
-        this->Kept->Caster->Write(plan.MaximumGap,
-          { part, depth->GetPointer(0), mask->GetPointer(0), normals->GetPointer(0) }, execution);
-        this->WarnAbout(
-          plan, std::count(mask->GetPointer(0), mask->GetPointer(pixels), 1) > 0, output);
-      }
-      output->GetPointData()->SetScalars(depth);
-      output->GetPointData()->AddArray(mask);
-      output->GetPointData()->SetNormals(normals);
-      vtkLacunaFieldData::Set(output, vtkLacunaDepthMap::IsoValuesName, { this->IsoValue }, 1);
-      vtkLacunaProvenance::Record(output, this, { plan.Images->Stack }, this->DescribeParameters());
-    });
+  vtkInformation* info = ports.GetOutputInformation();
+  auto* output = ports.GetOutput<vtkImageData>();
+  output->GetFieldData()->Initialize(); // VTK passes the slices' own
+  this->NumberOfCastSlices = 0;
+  const Plan plan(this, ports);
+  if (plan.IsEmpty())
+  {
+    output->Initialize();
+    return;
+  }
+  const lacuna::ImagePlane& plane = plan.Plane;
+  if (!IsAnnounced(info, plane))
+  {
+    throw std::runtime_error(
+      "the slices have changed since the map was announced (a source that changes with "
+      "time?); set FocalPoint, PlaneOrigin, PixelSpacing and ImageSize, so that the map does "
+      "not depend on the slices");
+  }
+  int extent[6];
+  info->Get(SDDP::UPDATE_EXTENT(), extent);
+  output->SetExtent(extent);
+  vtkLacunaDepthMap::SetGeometry(output, plane);
+  const vtkIdType pixels = output->GetNumberOfPoints();
+  constexpr std::int64_t arrays = sizeof(double) + sizeof(char) + 3 * sizeof(float);
+  lacuna::RequireMemory("this part of the depth map",
+    static_cast<double>(pixels) *
+      static_cast<double>(arrays + lacuna::SliceRayCaster::GetBytesPerPixel()),
+    this->Kept->GetBytes());
+  vtkNew<vtkDoubleArray> depth;
+  depth->SetName(vtkLacunaDepthMap::DepthName);
+  vtkLacunaArrays::SetNumberOfTuples(depth, pixels);
+  vtkNew<vtkCharArray> mask;
+  mask->SetName(vtkLacunaDepthMap::MaskName);
+  vtkLacunaArrays::SetNumberOfTuples(mask, pixels);
+  vtkNew<vtkFloatArray> normals;
+  normals->SetName(vtkLacunaDepthMap::NormalsName);
+  normals->SetNumberOfComponents(3);
+  vtkLacunaArrays::SetNumberOfTuples(normals, pixels);
+  if (pixels > 0)
+  {
+    const std::array<int, 4> part{ extent[0], extent[1], extent[2], extent[3] };
+    this->NumberOfCastSlices =
+      static_cast<vtkIdType>(this->Kept->Update(this, plan, part, execution));
+    execution.SetStage(0.9, 1);
+    this->Kept->Caster->Write(plan.MaximumGap,
+      { part, depth->GetPointer(0), mask->GetPointer(0), normals->GetPointer(0) }, execution);
+    this->WarnAbout(plan, std::count(mask->GetPointer(0), mask->GetPointer(pixels), 1) > 0, output);
+  }
+  output->GetPointData()->SetScalars(depth);
+  output->GetPointData()->AddArray(mask);
+  output->GetPointData()->SetNormals(normals);
+  vtkLacunaFieldData::Set(output, vtkLacunaDepthMap::IsoValuesName, { this->IsoValue }, 1);
 }
 
 //------------------------------------------------------------------------------
@@ -372,7 +353,7 @@ void vtkLacunaSliceRayCaster::WarnAbout(const Plan& plan, bool hasSurface, vtkIm
 }
 
 //------------------------------------------------------------------------------
-std::string vtkLacunaSliceRayCaster::DescribeParameters() const
+std::string vtkLacunaSliceRayCaster::Parameters(int) const
 {
   constexpr std::array<const char*, 3> badPoses{ "Refuse", "LeaveOut", "KeepOutliers" };
   constexpr std::array<const char*, 3> gapMethods{ "Automatic", "Given", "Unlimited" };
@@ -409,6 +390,6 @@ double* vtkLacunaSliceRayCaster::GetProposedIsoRange()
 void vtkLacunaSliceRayCaster::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
-  os << indent << "Parameters: " << this->DescribeParameters() << "\n"
+  os << indent << "Parameters: " << this->Parameters(0) << "\n"
      << indent << "NumberOfCastSlices: " << this->NumberOfCastSlices << "\n";
 }

@@ -43,7 +43,6 @@
 
 #include "vtkLacunaFiltersFreehandModule.h" // for export macro
 #include "vtkLacunaSliceAlgorithm.h"
-#include "vtkLacunaVersionCompat.h" // for stops
 
 #include <array>  // for std::array
 #include <memory> // for std::unique_ptr
@@ -55,7 +54,6 @@ public:
   static vtkLacunaSliceRayCaster* New();
   vtkTypeMacro(vtkLacunaSliceRayCaster, vtkLacunaSliceAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
-  vtkLacunaKeepTimeAtStops();
 
   enum SolidSideType
   {
@@ -140,10 +138,9 @@ protected:
   vtkLacunaSliceRayCaster();
   ~vtkLacunaSliceRayCaster() override;
 
-  int RequestInformation(
-    vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
-  int RequestData(
-    vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
+  void Announce(const lacuna::Ports& ports) override;
+  void Make(const lacuna::Ports& ports, vtkLacunaExecution& execution) override;
+  std::string Parameters(int port) const override;
 
 private:
   vtkLacunaSliceRayCaster(const vtkLacunaSliceRayCaster&) = delete;
@@ -152,7 +149,6 @@ private:
   class Plan;
   class State;
   void WarnAbout(const Plan& plan, bool hasSurface, vtkImageData* output);
-  std::string DescribeParameters() const;
 
   double IsoValue = 128;
   std::array<double, 2> ProposedIsoRange{ 128, 128 };

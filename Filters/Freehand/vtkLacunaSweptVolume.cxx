@@ -9,14 +9,9 @@
 #include "vtkFieldData.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
-#include "vtkInformationVector.h"
 #include "vtkIntArray.h"
 #include "vtkLacunaArrays.h"
-#include "vtkLacunaExecution.h"
 #include "vtkLacunaFieldData.h"
-#include "vtkLacunaInputs.h"
-#include "vtkLacunaProvenance.h"
-#include "vtkLacunaRequest.h"
 #include "vtkLacunaSweptVolumePlan.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
@@ -61,13 +56,14 @@ void WriteFans(vtkImageData* output, const vtkLacunaSweptVolumeFans& fans)
 
 // The volume changes whenever one of the inputs does; VTK by itself passes on the times of the
 // first input only.
-void AnnounceTimes(vtkInformationVector* inputs, vtkInformation* output)
+void AnnounceTimes(const lacuna::Ports& ports, int count)
 {
   using SDDP = vtkStreamingDemandDrivenPipeline;
   std::set<double> times;
-  for (int i = 0; i < inputs->GetNumberOfInformationObjects(); ++i)
+  vtkInformation* output = ports.GetOutputInformation();
+  for (int i = 0; i < count; ++i)
   {
-    vtkInformation* info = inputs->GetInformationObject(i);
+    vtkInformation* info = ports.GetInputInformation(0, i);
     const double* steps = info->Get(SDDP::TIME_STEPS());
     times.insert(steps, steps + info->Length(SDDP::TIME_STEPS()));
   }
@@ -145,7 +141,7 @@ std::unique_ptr<lacuna::SweptVolume> FillFromStreams(const vtkLacunaSweptVolumeP
 }
 
 // What a volume was made of, for its provenance: pixels that were read in parts have no hash.
-std::vector<vtkSmartPointer<vtkDataObject>> GetOrigins(const vtkLacunaSweptVolumePlan& plan)
+std::vector<vtkSmartPointer<vtkDataObject>> FindOrigins(const vtkLacunaSweptVolumePlan& plan)
 {
   std::vector<vtkSmartPointer<vtkDataObject>> origins;
   for (const vtkLacunaSliceImages& sweep : plan.Sweeps)
@@ -200,154 +196,145 @@ int vtkLacunaSweptVolume::FillInputPortInformation(int, vtkInformation* info)
 }
 
 //------------------------------------------------------------------------------
-int vtkLacunaSweptVolume::RequestInformation(
-  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
+void vtkLacunaSweptVolume::Announce(const lacuna::Ports& ports)
 {
-  return vtkLacunaExecution::RunInformation(this, outputs,
-    [&]
+  this->UpdateInput(ports);
+  vtkInformation* info = ports.GetOutputInformation();
+  int extent[6] = { 0, -1, 0, -1, 0, -1 };
+  const vtkLacunaSweptVolumePlan plan(this, ports, *this->Fans);
+  info->Remove(vtkDataObject::DIRECTION());
+  if (!plan.IsEmpty())
+  {
+    const lacuna::Vec3 origin = plan.GetOrigin();
+    for (int a = 0; a < 3; ++a)
     {
-      this->UpdateSlices(inputs);
-      vtkLacunaInputs::Check(this);
-      vtkInformation* info = outputs->GetInformationObject(0);
-      int extent[6] = { 0, -1, 0, -1, 0, -1 };
-      const vtkLacunaSweptVolumePlan plan(this, inputs[0], *this->Fans);
-      info->Remove(vtkDataObject::DIRECTION());
-      if (!plan.IsEmpty())
-      {
-        const lacuna::Vec3 origin = plan.GetOrigin();
-        for (int a = 0; a < 3; ++a)
-        {
-          extent[2 * a + 1] = plan.Grid.Dimensions[a] - 1;
-        }
-        info->Set(vtkDataObject::ORIGIN(), origin.data(), 3);
-        info->Set(vtkDataObject::DIRECTION(), plan.GetDirection().data(), 9);
-        info->Set(vtkDataObject::SPACING(), plan.Grid.Spacing.data(), 3);
-        vtkDataObject::SetPointDataActiveScalarInfo(info, plan.ScalarType, 1);
-      }
-      info->Set(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), extent, 6);
-      info->Set(vtkAlgorithm::CAN_PRODUCE_SUB_EXTENT(), 1);
-      info->Set(vtkStreamingDemandDrivenPipeline::TIME_DEPENDENT_INFORMATION(), 1);
-      AnnounceTimes(inputs[0], info);
-    });
+      extent[2 * a + 1] = plan.Grid.Dimensions[a] - 1;
+    }
+    info->Set(vtkDataObject::ORIGIN(), origin.data(), 3);
+    info->Set(vtkDataObject::DIRECTION(), plan.GetDirection().data(), 9);
+    info->Set(vtkDataObject::SPACING(), plan.Grid.Spacing.data(), 3);
+    vtkDataObject::SetPointDataActiveScalarInfo(info, plan.ScalarType, 1);
+  }
+  info->Set(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), extent, 6);
+  info->Set(vtkStreamingDemandDrivenPipeline::TIME_DEPENDENT_INFORMATION(), 1);
+  AnnounceTimes(ports, this->GetNumberOfInputConnections(0));
 }
 
 //------------------------------------------------------------------------------
-int vtkLacunaSweptVolume::RequestData(
-  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
+void vtkLacunaSweptVolume::Make(const lacuna::Ports& ports, vtkLacunaExecution& execution)
 {
-  const bool isWanted = vtkLacunaRequest::IsWanted(outputs); // not an empty part
-  return vtkLacunaExecution::RunAgreed(this, outputs, isWanted,
-    [&](vtkLacunaExecution& execution)
+  vtkInformation* info = ports.GetOutputInformation();
+  auto* output = ports.GetOutput<vtkImageData>();
+  output->GetFieldData()->Initialize(); // VTK passes the slices' own
+  const vtkLacunaSweptVolumePlan plan(this, ports, *this->Fans);
+  this->Origins = FindOrigins(plan);
+  if (plan.IsEmpty())
+  {
+    output->Initialize();
+    return;
+  }
+  std::map<std::string, std::string> warnings;
+  const lacuna::Vec3 origin = plan.GetOrigin();
+  const std::array<double, 9> direction = plan.GetDirection();
+  int whole[6];
+  info->Get(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), whole);
+  for (int a = 0; a < 3; ++a)
+  {
+    if (whole[2 * a + 1] != plan.Grid.Dimensions[a] - 1 ||
+      info->Get(vtkDataObject::ORIGIN())[a] != origin[a] ||
+      info->Get(vtkDataObject::SPACING())[a] != plan.Grid.Spacing[a] ||
+      !std::equal(direction.begin(), direction.end(), info->Get(vtkDataObject::DIRECTION())))
     {
-      vtkInformation* info = outputs->GetInformationObject(0);
-      vtkImageData* output = vtkImageData::GetData(outputs);
-      output->GetFieldData()->Initialize(); // VTK passes the slices' own
-      const vtkLacunaSweptVolumePlan plan(this, inputs[0], *this->Fans);
-      if (plan.IsEmpty())
-      {
-        output->Initialize();
-        return;
-      }
-      std::map<std::string, std::string> warnings;
-      const lacuna::Vec3 origin = plan.GetOrigin();
-      const std::array<double, 9> direction = plan.GetDirection();
-      int whole[6];
-      info->Get(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), whole);
-      for (int a = 0; a < 3; ++a)
-      {
-        if (whole[2 * a + 1] != plan.Grid.Dimensions[a] - 1 ||
-          info->Get(vtkDataObject::ORIGIN())[a] != origin[a] ||
-          info->Get(vtkDataObject::SPACING())[a] != plan.Grid.Spacing[a] ||
-          !std::equal(direction.begin(), direction.end(), info->Get(vtkDataObject::DIRECTION())))
-        {
-          throw vtkLacunaGridChanged("the slices have changed since the volume was announced (a "
-                                     "source that changes with time?); set OutputBounds and "
-                                     "OutputSpacing, so that they do not depend on the slices");
-        }
-      }
+      throw std::runtime_error("the slices have changed since the volume was announced (a "
+                               "source that changes with time?); set OutputBounds and "
+                               "OutputSpacing, so that they do not depend on the slices");
+    }
+  }
 
-      int updateExtent[6];
-      info->Get(vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT(), updateExtent);
-      output->SetExtent(updateExtent);
-      output->SetOrigin(origin.data());
-      output->SetDirectionMatrix(direction.data());
-      output->SetSpacing(plan.Grid.Spacing.data());
-      const vtkIdType size = output->GetNumberOfPoints();
-      lacuna::RequireMemory("this part of the volume",
-        static_cast<double>(size) * plan.BytesPerVoxel, this->Growing->GetBytes());
-      vtkSmartPointer<vtkDataArray> intensity;
-      intensity.TakeReference(vtkDataArray::CreateDataArray(plan.ScalarType));
-      intensity->SetName("Intensity");
-      vtkLacunaArrays::SetNumberOfTuples(intensity, size);
-      vtkNew<vtkUnsignedIntArray> contributions;
-      contributions->SetName("Contributions");
-      vtkLacunaArrays::SetNumberOfTuples(contributions, size);
-      vtkNew<vtkCharArray> mask;
-      mask->SetName("vtkValidPointMask");
-      vtkLacunaArrays::SetNumberOfTuples(mask, size);
+  int updateExtent[6];
+  info->Get(vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT(), updateExtent);
+  output->SetExtent(updateExtent);
+  output->SetOrigin(origin.data());
+  output->SetDirectionMatrix(direction.data());
+  output->SetSpacing(plan.Grid.Spacing.data());
+  const vtkIdType size = output->GetNumberOfPoints();
+  lacuna::RequireMemory("this part of the volume", static_cast<double>(size) * plan.BytesPerVoxel,
+    this->Growing->GetBytes());
+  vtkSmartPointer<vtkDataArray> intensity;
+  intensity.TakeReference(vtkDataArray::CreateDataArray(plan.ScalarType));
+  intensity->SetName("Intensity");
+  vtkLacunaArrays::SetNumberOfTuples(intensity, size);
+  vtkNew<vtkUnsignedIntArray> contributions;
+  contributions->SetName("Contributions");
+  vtkLacunaArrays::SetNumberOfTuples(contributions, size);
+  vtkNew<vtkCharArray> mask;
+  mask->SetName("vtkValidPointMask");
+  vtkLacunaArrays::SetNumberOfTuples(mask, size);
 
-      if (HasPoints(updateExtent))
-      {
-        std::array<int, 6> extent;
-        std::copy(updateExtent, updateExtent + 6, extent.begin());
-        lacuna::GrowingVolume::Sweeps sweeps;
-        for (const vtkLacunaSliceImages& sweep : plan.Sweeps)
-        {
-          sweeps.push_back(&sweep.Slices);
-        }
-        std::unique_ptr<lacuna::SweptVolume> streamed;
-        if (plan.HasStreams())
-        {
-          this->Growing = std::make_unique<lacuna::GrowingVolume>(); // without what was kept
-          streamed = FillFromStreams(plan, extent, execution, 0.9);
-        }
-        const lacuna::SweptVolume& volume = streamed
-          ? *streamed
-          : this->Growing->Update(
-              sweeps, plan.Grid, extent, plan.Options, plan.IsReplay, execution, 0, 0.9);
-        warnings = CheckVolume(volume, plan);
-        execution.SetStage(0.9, 1);
-        std::int64_t faults = 0;
-        switch (plan.ScalarType)
-        {
-          vtkTemplateMacro(faults = volume.Write(static_cast<VTK_TT*>(intensity->GetVoidPointer(0)),
-                             contributions->GetPointer(0), mask->GetPointer(0), execution));
-        }
-        if (faults > 0)
-        {
-          warnings["not finite"] = std::to_string(faults) +
-            " voxels stay empty, since their grey levels would not be finite numbers: some pixels "
-            "are not (NaN or infinite), or are too large for the output";
-        }
-        const char* const filled = mask->GetPointer(0);
-        if (plan.Options.MaximumSliceGap > 0 && !plan.IsMoreToCome &&
-          plan.Options.Interpolation == lacuna::SweptVolume::Method::BetweenSlices &&
-          std::equal(whole, whole + 6, updateExtent) && !std::count(filled, filled + size, 1))
-        {
-          warnings["gap"] = "the volume is empty: all slices are further apart than "
-                            "MaximumSliceGap, which is in mm; 0 is no limit";
-        }
-        this->Growing->Finish();
-      }
-      std::vector<const vtkLacunaSliceImages*> swept;
-      for (const vtkLacunaSliceImages& sweep : plan.Sweeps)
-      {
-        swept.push_back(&sweep);
-      }
-      this->RecordSweeps(swept, this->MaximumSliceGap, output, warnings);
-      this->WarnOfNews(warnings, plan.LeftOut);
-      output->GetPointData()->SetScalars(intensity);
-      output->GetPointData()->AddArray(contributions);
-      output->GetPointData()->AddArray(mask);
-      WriteFans(output, *this->Fans);
-      const std::vector<vtkSmartPointer<vtkDataObject>> origins = GetOrigins(plan);
-      vtkLacunaProvenance::Record(
-        output, this, { origins.begin(), origins.end() }, this->DescribeParameters());
-    });
+  if (HasPoints(updateExtent))
+  {
+    std::array<int, 6> extent;
+    std::copy(updateExtent, updateExtent + 6, extent.begin());
+    lacuna::GrowingVolume::Sweeps sweeps;
+    for (const vtkLacunaSliceImages& sweep : plan.Sweeps)
+    {
+      sweeps.push_back(&sweep.Slices);
+    }
+    std::unique_ptr<lacuna::SweptVolume> streamed;
+    if (plan.HasStreams())
+    {
+      this->Growing = std::make_unique<lacuna::GrowingVolume>(); // without what was kept
+      streamed = FillFromStreams(plan, extent, execution, 0.9);
+    }
+    const lacuna::SweptVolume& volume = streamed
+      ? *streamed
+      : this->Growing->Update(
+          sweeps, plan.Grid, extent, plan.Options, plan.IsReplay, execution, 0, 0.9);
+    warnings = CheckVolume(volume, plan);
+    execution.SetStage(0.9, 1);
+    std::int64_t faults = 0;
+    switch (plan.ScalarType)
+    {
+      vtkTemplateMacro(faults = volume.Write(static_cast<VTK_TT*>(intensity->GetVoidPointer(0)),
+                         contributions->GetPointer(0), mask->GetPointer(0), execution));
+    }
+    if (faults > 0)
+    {
+      warnings["not finite"] = std::to_string(faults) +
+        " voxels stay empty, since their grey levels would not be finite numbers: some pixels "
+        "are not (NaN or infinite), or are too large for the output";
+    }
+    const char* const filled = mask->GetPointer(0);
+    if (plan.Options.MaximumSliceGap > 0 && !plan.IsMoreToCome &&
+      plan.Options.Interpolation == lacuna::SweptVolume::Method::BetweenSlices &&
+      std::equal(whole, whole + 6, updateExtent) && !std::count(filled, filled + size, 1))
+    {
+      warnings["gap"] = "the volume is empty: all slices are further apart than "
+                        "MaximumSliceGap, which is in mm; 0 is no limit";
+    }
+    this->Growing->Finish();
+  }
+  std::vector<const vtkLacunaSliceImages*> swept;
+  for (const vtkLacunaSliceImages& sweep : plan.Sweeps)
+  {
+    swept.push_back(&sweep);
+  }
+  this->RecordSweeps(swept, this->MaximumSliceGap, output, warnings);
+  this->WarnOfNews(warnings, plan.LeftOut);
+  output->GetPointData()->SetScalars(intensity);
+  output->GetPointData()->AddArray(contributions);
+  output->GetPointData()->AddArray(mask);
+  WriteFans(output, *this->Fans);
 }
 
 //------------------------------------------------------------------------------
-std::string vtkLacunaSweptVolume::DescribeParameters() const
+std::vector<vtkDataObject*> vtkLacunaSweptVolume::GetOrigins(const lacuna::Ports&) const
+{
+  return { this->Origins.begin(), this->Origins.end() };
+}
+
+//------------------------------------------------------------------------------
+std::string vtkLacunaSweptVolume::Parameters(int) const
 {
   constexpr std::array<const char*, 2> frames{ "Reference", "Principal" };
   constexpr std::array<const char*, 3> samplings{ "Footprint", "Bilinear", "Nearest" };
@@ -385,6 +372,6 @@ std::string vtkLacunaSweptVolume::DescribeParameters() const
 void vtkLacunaSweptVolume::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
-  os << indent << "Parameters: " << this->DescribeParameters() << "\n";
+  os << indent << "Parameters: " << this->Parameters(0) << "\n";
   os << indent << "MemoryLimit: " << this->MemoryLimit << "\n";
 }

@@ -48,7 +48,7 @@
 
 #include "vtkLacunaFiltersFreehandModule.h" // for export macro
 #include "vtkLacunaSliceAlgorithm.h"
-#include "vtkLacunaVersionCompat.h" // for stops
+#include "vtkSmartPointer.h" // for origins
 
 #include <memory>
 #include <string>
@@ -65,7 +65,6 @@ public:
   static vtkLacunaSweptVolume* New();
   vtkTypeMacro(vtkLacunaSweptVolume, vtkLacunaSliceAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
-  vtkLacunaKeepTimeAtStops();
 
   enum OutputFrames
   {
@@ -219,16 +218,14 @@ protected:
 
   bool TakesStreams() const override { return true; }
   int FillInputPortInformation(int port, vtkInformation* info) override;
-  int RequestInformation(
-    vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
-  int RequestData(
-    vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
+  void Announce(const lacuna::Ports& ports) override;
+  void Make(const lacuna::Ports& ports, vtkLacunaExecution& execution) override;
+  std::string Parameters(int port) const override;
+  std::vector<vtkDataObject*> GetOrigins(const lacuna::Ports& ports) const override;
 
 private:
   vtkLacunaSweptVolume(const vtkLacunaSweptVolume&) = delete;
   void operator=(const vtkLacunaSweptVolume&) = delete;
-
-  std::string DescribeParameters() const;
 
   double OutputSpacing[3] = { 0, 0, 0 };
   double OutputBounds[6] = { 1, -1, 1, -1, 1, -1 };
@@ -245,5 +242,6 @@ private:
   std::unique_ptr<vtkLacunaSweptVolumeFans> Fans;
   std::string FanDescription;
   std::unique_ptr<lacuna::GrowingVolume> Growing;
+  std::vector<vtkSmartPointer<vtkDataObject>> Origins; ///< of the last volume
 };
 #endif

@@ -7,8 +7,7 @@
 #include "lacunaPropertyRange.h"
 #include "vtkDataArray.h"
 #include "vtkImageData.h"
-#include "vtkInformationVector.h"
-#include "vtkLacunaExecution.h"
+#include "vtkLacunaAlgorithm.h"
 #include "vtkLacunaScalarType.h"
 #include "vtkLacunaSliceStream.h"
 #include "vtkLacunaSweptVolume.h"
@@ -34,10 +33,10 @@ vtkLacunaSliceFan DetectFan(const vtkLacunaSliceImages& sweep, vtkAlgorithm* fil
 
 //------------------------------------------------------------------------------
 vtkLacunaSweptVolumePlan::vtkLacunaSweptVolumePlan(
-  vtkLacunaSweptVolume* filter, vtkInformationVector* inputs, vtkLacunaSweptVolumeFans& fans)
+  vtkLacunaSweptVolume* filter, const lacuna::Ports& ports, vtkLacunaSweptVolumeFans& fans)
   : ScalarType(VTK_FLOAT)
 {
-  this->ReadSweeps(filter, inputs);
+  this->ReadSweeps(filter, ports);
   if (!this->IsEmpty())
   {
     this->PlacedSlices = this->GetAllSlices();
@@ -61,20 +60,19 @@ bool vtkLacunaSweptVolumePlan::HasStreams() const
 }
 
 //------------------------------------------------------------------------------
-void vtkLacunaSweptVolumePlan::ReadSweeps(
-  vtkLacunaSweptVolume* filter, vtkInformationVector* inputs)
+void vtkLacunaSweptVolumePlan::ReadSweeps(vtkLacunaSweptVolume* filter, const lacuna::Ports& ports)
 {
-  const int count = inputs->GetNumberOfInformationObjects();
+  const int count = filter->GetNumberOfInputConnections(0);
   const int needed = filter->GetInterpolation() == vtkLacunaSweptVolume::NearestVoxel ? 1 : 2;
   for (int i = 0; i < count; ++i)
   {
-    vtkImageData* stack = vtkImageData::GetData(inputs, i);
+    auto* stack = ports.GetInput<vtkImageData>(0, i);
     if (!stack || stack->GetNumberOfPoints() == 0)
     {
       continue;
     }
     vtkLacunaSliceSelection selection =
-      vtkLacunaSliceSelection::Make(filter, inputs->GetInformationObject(i));
+      vtkLacunaSliceSelection::Make(filter, ports.GetInputInformation(0, i));
     this->IsReplay |= selection.IsReplay;
     selection.HasSweepEnds = filter->GetGapMethod() == vtkLacunaSweptVolume::AutomaticGap;
     selection.Suffix = count > 1 ? " of input " + std::to_string(i) : "";

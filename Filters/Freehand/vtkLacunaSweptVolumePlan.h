@@ -16,7 +16,10 @@
 #include <string>
 #include <vector>
 
-class vtkInformationVector;
+namespace lacuna
+{
+class Ports;
+}
 class vtkLacunaSweptVolume;
 
 /// Fans that were found in the inputs, so that they are searched for only when something changes.
@@ -33,10 +36,10 @@ struct vtkLacunaSweptVolumeFans
 class vtkLacunaSweptVolumePlan
 {
 public:
-  /// inputs: of port 0. fans: kept from plan to plan. Throws std::exception with a text for the
+  /// ports: of filter. fans: kept from plan to plan. Throws std::exception with a text for the
   /// user.
   vtkLacunaSweptVolumePlan(
-    vtkLacunaSweptVolume* filter, vtkInformationVector* inputs, vtkLacunaSweptVolumeFans& fans);
+    vtkLacunaSweptVolume* filter, const lacuna::Ports& ports, vtkLacunaSweptVolumeFans& fans);
 
   /// True when there is nothing in the inputs.
   bool IsEmpty() const { return this->Sweeps.empty(); }
@@ -62,7 +65,7 @@ public:
   bool IsMoreToCome = false;
 
 private:
-  void ReadSweeps(vtkLacunaSweptVolume* filter, vtkInformationVector* inputs);
+  void ReadSweeps(vtkLacunaSweptVolume* filter, const lacuna::Ports& ports);
   void ApplyFans(vtkLacunaSweptVolume* filter, vtkLacunaSweptVolumeFans& fans);
   void ChooseOptions(vtkLacunaSweptVolume* filter);
   void ChooseFrame(vtkLacunaSweptVolume* filter);

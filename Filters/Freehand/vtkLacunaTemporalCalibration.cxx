@@ -7,12 +7,8 @@
 #include "vtkDoubleArray.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
-#include "vtkInformationVector.h"
 #include "vtkLacunaCalibrationPicks.h"
-#include "vtkLacunaExecution.h"
 #include "vtkLacunaFieldData.h"
-#include "vtkLacunaProvenance.h"
-#include "vtkLacunaRequest.h"
 #include "vtkLacunaTrackedSlices.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
@@ -53,59 +49,57 @@ int vtkLacunaTemporalCalibration::FillInputPortInformation(int, vtkInformation* 
 }
 
 //------------------------------------------------------------------------------
-int vtkLacunaTemporalCalibration::RequestUpdateExtent(
-  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
+vtkLacunaTemporalCalibration::vtkLacunaTemporalCalibration()
 {
-  vtkLacunaRequest::Whole(this, inputs[0]->GetInformationObject(0), outputs);
-  return 1;
+  this->Sharing = lacuna::Share::FirstRank;
+  this->TakesEmpty = true; // an error
+  this->TakesBlocks = true;
 }
 
 //------------------------------------------------------------------------------
-int vtkLacunaTemporalCalibration::RequestData(
-  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
+void vtkLacunaTemporalCalibration::Make(const lacuna::Ports& ports, vtkLacunaExecution& execution)
 {
-  const bool isWanted = vtkLacunaRequest::IsWanted(outputs); // it is made in one piece
-  return vtkLacunaExecution::RunAgreed(this, outputs, isWanted,
-    [&](vtkLacunaExecution& execution)
-    {
-      vtkImageData* slices = vtkImageData::GetData(inputs[0]);
-      if (slices->GetNumberOfPoints() == 0)
-      {
-        throw std::runtime_error("the stack of slices is empty");
-      }
-      const vtkLacunaProbePoses poses(slices);
-      vtkDataArray* times = vtkLacunaFieldData::Find(
-        slices, vtkLacunaTrackedSlices::TimestampName, 1, poses.GetCount());
-      if (!times)
-      {
-        throw std::runtime_error("the slices have no times (field data array Timestamp, s)");
-      }
-      const auto walls = vtkLacunaCalibrationPicks::FindWalls(execution, slices);
-      double bounds[6];
-      slices->GetBounds(bounds);
-      const int first = slices->GetExtent()[4];
-      std::vector<lacuna::TemporalCalibration::Sample> samples;
-      for (std::size_t k = 0; k < walls.size(); ++k)
-      {
-        const vtkIdType slice = vtkLacunaTrackedSlices::GetSliceNumber(
-          slices, first + static_cast<int>(k), poses.GetCount());
-        const double row = walls[k] ? GetRow(*walls[k], 0.5 * (bounds[0] + bounds[1]))
-                                    : std::numeric_limits<double>::quiet_NaN();
-        samples.push_back(
-          { times->GetTuple1(slice), row, poses.Get(slice), bool(poses.IsValid(slice)) });
-      }
-      const lacuna::TemporalCalibration found =
-        lacuna::TemporalCalibration::Solve(samples, this->MaximumLag);
-      vtkTable* table = vtkTable::GetData(outputs);
-      AddColumn(table, "Lag", found.Lags);
-      AddColumn(table, "Correlation", found.Correlations);
-      vtkLacunaFieldData::Set(table, "TimeOffset", { -found.Lag }, 1);
-      vtkLacunaFieldData::Set(table, "LagSpread", { found.Spread }, 1);
-      vtkLacunaFieldData::Set(table, "Correlation", { found.Correlation }, 1);
-      vtkLacunaFieldData::Set(table, "Frames", { static_cast<double>(found.Frames) }, 1);
-      vtkLacunaProvenance::Record(
-        table, this, { slices }, lacuna::ParameterText().Add("MaximumLag", this->MaximumLag).Get());
-    });
+  auto* slices = ports.GetInput<vtkImageData>();
+  if (slices->GetNumberOfPoints() == 0)
+  {
+    throw std::runtime_error("the stack of slices is empty");
+  }
+  const vtkLacunaProbePoses poses(slices);
+  vtkDataArray* times =
+    vtkLacunaFieldData::Find(slices, vtkLacunaTrackedSlices::TimestampName, 1, poses.GetCount());
+  if (!times)
+  {
+    throw std::runtime_error("the slices have no times (field data array Timestamp, s)");
+  }
+  const auto walls = vtkLacunaCalibrationPicks::FindWalls(execution, slices);
+  double bounds[6];
+  slices->GetBounds(bounds);
+  const int first = slices->GetExtent()[4];
+  std::vector<lacuna::TemporalCalibration::Sample> samples;
+  for (std::size_t k = 0; k < walls.size(); ++k)
+  {
+    const vtkIdType slice =
+      vtkLacunaTrackedSlices::GetSliceNumber(slices, first + static_cast<int>(k), poses.GetCount());
+    const double row = walls[k] ? GetRow(*walls[k], 0.5 * (bounds[0] + bounds[1]))
+                                : std::numeric_limits<double>::quiet_NaN();
+    samples.push_back(
+      { times->GetTuple1(slice), row, poses.Get(slice), bool(poses.IsValid(slice)) });
+  }
+  const lacuna::TemporalCalibration found =
+    lacuna::TemporalCalibration::Solve(samples, this->MaximumLag);
+  auto* table = ports.GetOutput<vtkTable>();
+  AddColumn(table, "Lag", found.Lags);
+  AddColumn(table, "Correlation", found.Correlations);
+  vtkLacunaFieldData::Set(table, "TimeOffset", { -found.Lag }, 1);
+  vtkLacunaFieldData::Set(table, "LagSpread", { found.Spread }, 1);
+  vtkLacunaFieldData::Set(table, "Correlation", { found.Correlation }, 1);
+  vtkLacunaFieldData::Set(table, "Frames", { static_cast<double>(found.Frames) }, 1);
+}
+
+//------------------------------------------------------------------------------
+std::string vtkLacunaTemporalCalibration::Parameters(int) const
+{
+  return lacuna::ParameterText().Add("MaximumLag", this->MaximumLag).Get();
 }
 
 //------------------------------------------------------------------------------

@@ -23,17 +23,17 @@
 #ifndef vtkLacunaTemporalCalibration_h
 #define vtkLacunaTemporalCalibration_h
 
+#include "vtkLacunaAlgorithm.h"
 #include "vtkLacunaFiltersFreehandModule.h" // for export macro
-#include "vtkLacunaVersionCompat.h"         // for stops
 #include "vtkTableAlgorithm.h"
 
-class VTKLACUNAFILTERSFREEHAND_EXPORT vtkLacunaTemporalCalibration : public vtkTableAlgorithm
+class VTKLACUNAFILTERSFREEHAND_EXPORT vtkLacunaTemporalCalibration
+  : public vtkLacunaAlgorithmOf(vtkTableAlgorithm)
 {
 public:
   static vtkLacunaTemporalCalibration* New();
   vtkTypeMacro(vtkLacunaTemporalCalibration, vtkTableAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
-  vtkLacunaKeepTimeAtStops();
 
   ///@{
   /// Lags up to this many s, either way, are tried; above 0, at most 2. Default: 0.5.
@@ -42,14 +42,12 @@ public:
   ///@}
 
 protected:
-  vtkLacunaTemporalCalibration() = default;
+  vtkLacunaTemporalCalibration();
   ~vtkLacunaTemporalCalibration() override = default;
 
   int FillInputPortInformation(int port, vtkInformation* info) override;
-  int RequestUpdateExtent(
-    vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
-  int RequestData(
-    vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
+  void Make(const lacuna::Ports& ports, vtkLacunaExecution& execution) override;
+  std::string Parameters(int port) const override;
 
 private:
   vtkLacunaTemporalCalibration(const vtkLacunaTemporalCalibration&) = delete;

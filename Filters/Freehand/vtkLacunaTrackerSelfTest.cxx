@@ -8,13 +8,9 @@
 #include "vtkFieldData.h"
 #include "vtkIdTypeArray.h"
 #include "vtkInformation.h"
-#include "vtkInformationVector.h"
 #include "vtkLacunaArrays.h"
-#include "vtkLacunaExecution.h"
 #include "vtkLacunaFieldData.h"
-#include "vtkLacunaProvenance.h"
 #include "vtkLacunaReceiverPairs.h"
-#include "vtkLacunaRequest.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
@@ -128,6 +124,9 @@ vtkStandardNewMacro(vtkLacunaTrackerSelfTest);
 //------------------------------------------------------------------------------
 vtkLacunaTrackerSelfTest::vtkLacunaTrackerSelfTest()
 {
+  this->Sharing = lacuna::Share::FirstRank;
+  this->TakesEmpty = true; // an error
+  this->TakesBlocks = true;
   this->SetNumberOfOutputPorts(3);
 }
 
@@ -167,84 +166,68 @@ int vtkLacunaTrackerSelfTest::FillOutputPortInformation(int port, vtkInformation
 }
 
 //------------------------------------------------------------------------------
-int vtkLacunaTrackerSelfTest::RequestUpdateExtent(
-  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
+void vtkLacunaTrackerSelfTest::Make(const lacuna::Ports& ports, vtkLacunaExecution&)
 {
-  vtkLacunaRequest::Whole(this, inputs[0]->GetInformationObject(0), outputs);
-  return 1;
+  auto* input = ports.GetInput<vtkDataObject>();
+  vtkLacunaReceiverRequest request;
+  request.FirstReceiver = this->FirstReceiver;
+  request.SecondReceiver = this->SecondReceiver;
+  request.Format = static_cast<lacuna::PoseFormat>(this->PoseFormat);
+  request.Unit = static_cast<lacuna::LengthUnit>(this->LengthUnit);
+  request.Stations[0] = this->Stations[0];
+  request.Stations[1] = this->Stations[1];
+  const vtkLacunaReceiverPairs pairs(input, request);
+  for (const std::string& warning : pairs.Warnings)
+  {
+    vtkWarningMacro(<< warning);
+  }
+  lacuna::TrackerSelfTestOptions options;
+  options.SpeedLimit = this->SpeedLimit;
+  options.RevisitDistance = this->RevisitDistance;
+  options.RevisitAngle = this->RevisitAngle;
+  options.Accuracy = { this->TranslationAccuracy, this->AngularAccuracy };
+  options.RangeLimit = this->RangeLimit;
+  const Test found = Test::Solve(pairs.Pairs, options);
+
+  auto* points = ports.GetOutput<vtkPolyData>();
+  FillPoints(found, points);
+  auto* byDistance = ports.GetOutput<vtkTable>(1);
+  using DistanceRow = Test::DistanceRow;
+  FillTable<DistanceRow>(found.ByDistance,
+    { { "From", [](const DistanceRow& row) { return row.From; } },
+      { "To", [](const DistanceRow& row) { return row.To; } },
+      { "Pairs", [](const DistanceRow& row) { return static_cast<double>(row.Samples); } },
+      { "PositionRms", [](const DistanceRow& row) { return row.Rms.Position; } },
+      { "SeparationRms", [](const DistanceRow& row) { return row.Rms.Separation; } },
+      { "AngleRms", [](const DistanceRow& row) { return row.Rms.Angle; } } },
+    byDistance);
+  auto* byApart = ports.GetOutput<vtkTable>(2);
+  using ApartRow = Test::ApartRow;
+  FillTable<ApartRow>(found.ByApart,
+    { { "From", [](const ApartRow& row) { return row.From; } },
+      { "To", [](const ApartRow& row) { return row.To; } },
+      { "PairsOfPlaces", [](const ApartRow& row) { return static_cast<double>(row.Pairs); } },
+      { "PositionChange", [](const ApartRow& row) { return row.Position; } } },
+    byApart);
+  vtkNew<vtkStringArray> advice;
+  advice->SetName("Advice");
+  for (const std::string& sentence : found.GetAdvice())
+  {
+    advice->InsertNextValue(sentence);
+  }
+  for (vtkDataObject* output : std::initializer_list<vtkDataObject*>{ points, byDistance, byApart })
+  {
+    AddFigures(output, found, advice);
+  }
+  // A good verdict alone is no warning.
+  for (vtkIdType i = 0; i < advice->GetNumberOfValues() && advice->GetNumberOfValues() > 1; ++i)
+  {
+    vtkWarningMacro(<< advice->GetValue(i));
+  }
 }
 
 //------------------------------------------------------------------------------
-int vtkLacunaTrackerSelfTest::RequestData(
-  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
-{
-  const bool isWanted = vtkLacunaRequest::IsWanted(outputs); // it is made in one piece
-  return vtkLacunaExecution::RunAgreed(this, outputs, isWanted,
-    [&](vtkLacunaExecution&)
-    {
-      vtkDataObject* input = vtkDataObject::GetData(inputs[0]);
-      vtkLacunaReceiverRequest request;
-      request.FirstReceiver = this->FirstReceiver;
-      request.SecondReceiver = this->SecondReceiver;
-      request.Format = static_cast<lacuna::PoseFormat>(this->PoseFormat);
-      request.Unit = static_cast<lacuna::LengthUnit>(this->LengthUnit);
-      request.Stations[0] = this->Stations[0];
-      request.Stations[1] = this->Stations[1];
-      const vtkLacunaReceiverPairs pairs(input, request);
-      for (const std::string& warning : pairs.Warnings)
-      {
-        vtkWarningMacro(<< warning);
-      }
-      lacuna::TrackerSelfTestOptions options;
-      options.SpeedLimit = this->SpeedLimit;
-      options.RevisitDistance = this->RevisitDistance;
-      options.RevisitAngle = this->RevisitAngle;
-      options.Accuracy = { this->TranslationAccuracy, this->AngularAccuracy };
-      options.RangeLimit = this->RangeLimit;
-      const Test found = Test::Solve(pairs.Pairs, options);
-
-      vtkPolyData* points = vtkPolyData::GetData(outputs, 0);
-      FillPoints(found, points);
-      vtkTable* byDistance = vtkTable::GetData(outputs, 1);
-      using DistanceRow = Test::DistanceRow;
-      FillTable<DistanceRow>(found.ByDistance,
-        { { "From", [](const DistanceRow& row) { return row.From; } },
-          { "To", [](const DistanceRow& row) { return row.To; } },
-          { "Pairs", [](const DistanceRow& row) { return static_cast<double>(row.Samples); } },
-          { "PositionRms", [](const DistanceRow& row) { return row.Rms.Position; } },
-          { "SeparationRms", [](const DistanceRow& row) { return row.Rms.Separation; } },
-          { "AngleRms", [](const DistanceRow& row) { return row.Rms.Angle; } } },
-        byDistance);
-      vtkTable* byApart = vtkTable::GetData(outputs, 2);
-      using ApartRow = Test::ApartRow;
-      FillTable<ApartRow>(found.ByApart,
-        { { "From", [](const ApartRow& row) { return row.From; } },
-          { "To", [](const ApartRow& row) { return row.To; } },
-          { "PairsOfPlaces", [](const ApartRow& row) { return static_cast<double>(row.Pairs); } },
-          { "PositionChange", [](const ApartRow& row) { return row.Position; } } },
-        byApart);
-      vtkNew<vtkStringArray> advice;
-      advice->SetName("Advice");
-      for (const std::string& sentence : found.GetAdvice())
-      {
-        advice->InsertNextValue(sentence);
-      }
-      for (vtkDataObject* output :
-        std::initializer_list<vtkDataObject*>{ points, byDistance, byApart })
-      {
-        AddFigures(output, found, advice);
-        vtkLacunaProvenance::Record(output, this, { input }, this->GetParameters());
-      }
-      // A good verdict alone is no warning.
-      for (vtkIdType i = 0; i < advice->GetNumberOfValues() && advice->GetNumberOfValues() > 1; ++i)
-      {
-        vtkWarningMacro(<< advice->GetValue(i));
-      }
-    });
-}
-
-//------------------------------------------------------------------------------
-std::string vtkLacunaTrackerSelfTest::GetParameters() const
+std::string vtkLacunaTrackerSelfTest::Parameters(int) const
 {
   return lacuna::ParameterText()
     .Add("FirstReceiver", this->FirstReceiver)
@@ -265,5 +248,5 @@ std::string vtkLacunaTrackerSelfTest::GetParameters() const
 void vtkLacunaTrackerSelfTest::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
-  os << indent << this->GetParameters() << "\n";
+  os << indent << this->Parameters(0) << "\n";
 }

@@ -43,19 +43,19 @@
 #ifndef vtkLacunaTrackerSelfTest_h
 #define vtkLacunaTrackerSelfTest_h
 
+#include "vtkLacunaAlgorithm.h"
 #include "vtkLacunaFiltersFreehandModule.h" // for export macro
-#include "vtkLacunaVersionCompat.h"         // for stops
 #include "vtkPolyDataAlgorithm.h"
 
 #include <string>
 
-class VTKLACUNAFILTERSFREEHAND_EXPORT vtkLacunaTrackerSelfTest : public vtkPolyDataAlgorithm
+class VTKLACUNAFILTERSFREEHAND_EXPORT vtkLacunaTrackerSelfTest
+  : public vtkLacunaAlgorithmOf(vtkPolyDataAlgorithm)
 {
 public:
   static vtkLacunaTrackerSelfTest* New();
   vtkTypeMacro(vtkLacunaTrackerSelfTest, vtkPolyDataAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
-  vtkLacunaKeepTimeAtStops();
 
   enum PoseFormats
   {
@@ -135,16 +135,12 @@ protected:
 
   int FillInputPortInformation(int port, vtkInformation* info) override;
   int FillOutputPortInformation(int port, vtkInformation* info) override;
-  int RequestUpdateExtent(
-    vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
-  int RequestData(
-    vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
+  void Make(const lacuna::Ports& ports, vtkLacunaExecution& execution) override;
+  std::string Parameters(int port) const override;
 
 private:
   vtkLacunaTrackerSelfTest(const vtkLacunaTrackerSelfTest&) = delete;
   void operator=(const vtkLacunaTrackerSelfTest&) = delete;
-
-  std::string GetParameters() const;
 
   std::string FirstReceiver = "ProbeToTracker";
   std::string SecondReceiver;
