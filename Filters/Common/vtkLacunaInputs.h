@@ -9,7 +9,6 @@
 
 #include <string>
 
-class vtkAlgorithm;
 class vtkDataObject;
 class vtkInformation;
 
@@ -24,19 +23,5 @@ VTKLACUNAFILTERSCOMMON_EXPORT void Check(vtkDataObject* data, const std::string&
 /// Throws when data is an image of which less arrived than info asks for, as behind filters that give each rank a part.
 VTKLACUNAFILTERSCOMMON_EXPORT void CheckPart(
   vtkDataObject* data, vtkInformation* info, const std::string& name);
-
-/// All inputs that algorithm has, by the numbers of their ports. Throws, too, when an input holds the error of an
-/// algorithm upstream (vtkLacunaFailure), when an image was refused
-/// (vtkLacunaRequest::Whole), or less of it arrived than algorithm asked for, as behind ParaView's
-/// Resample To Image on several ranks, or when it is known of a filter upstream that it gives ranks
-/// different points or rows, whatever they ask for, as Redistribute Data Set does.
-VTKLACUNAFILTERSCOMMON_EXPORT void Check(vtkAlgorithm* algorithm);
-
-/// Those of one port.
-VTKLACUNAFILTERSCOMMON_EXPORT void Check(vtkAlgorithm* algorithm, int port);
-
-/// Throws std::runtime_error when an input has blocks and algorithm does not take them: VTK would execute it
-/// block by block, with what was announced for all of them. Also throws for each of these blocks.
-VTKLACUNAFILTERSCOMMON_EXPORT void CheckSingle(vtkAlgorithm* algorithm);
 }
 #endif

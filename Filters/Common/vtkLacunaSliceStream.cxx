@@ -5,10 +5,14 @@
 #include "vtkAlgorithmOutput.h"
 #include "vtkInformation.h"
 #include "vtkInformationObjectBaseKey.h"
-#include "vtkLacunaRequest.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 
 #include <algorithm>
+
+namespace
+{
+bool (*PassesOn)(vtkAlgorithm*) = nullptr;
+}
 
 vtkInformationKeyMacro(vtkLacunaSliceStream, STREAM, ObjectBase);
 
@@ -20,7 +24,7 @@ vtkLacunaSliceStream* vtkLacunaSliceStream::Find(vtkAlgorithm* consumer, int por
     return nullptr;
   }
   vtkAlgorithmOutput* output = consumer->GetInputConnection(port, connection);
-  while (output->GetProducer()->IsA("vtkPVPostFilter") &&
+  while (PassesOn && PassesOn(output->GetProducer()) &&
     output->GetProducer()->GetNumberOfInputConnections(0) > 0)
   {
     output = output->GetProducer()->GetInputConnection(0, 0);
@@ -30,18 +34,9 @@ vtkLacunaSliceStream* vtkLacunaSliceStream::Find(vtkAlgorithm* consumer, int por
 }
 
 //------------------------------------------------------------------------------
-bool vtkLacunaSliceStream::RequestFields(
-  vtkAlgorithm* consumer, vtkInformation* input, int port, int connection)
+void vtkLacunaSliceStream::SetPassesOn(bool (*function)(vtkAlgorithm*))
 {
-  if (!Find(consumer, port, connection))
-  {
-    return false;
-  }
-  int slice[6];
-  input->Get(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), slice);
-  slice[5] = slice[4];
-  vtkLacunaRequest::Extent(consumer, input, slice);
-  return true;
+  PassesOn = function;
 }
 
 //------------------------------------------------------------------------------

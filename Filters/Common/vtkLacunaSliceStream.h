@@ -35,18 +35,17 @@ public:
   static vtkInformationObjectBaseKey* STREAM();
 
   /// The stream beside what is connected to an input of consumer; null when the input is all there
-  /// is, as usual. Looks through the filters that ParaView puts behind every proxy.
+  /// is, as usual. Looks through filters that pass on their input (SetPassesOn).
   static vtkLacunaSliceStream* Find(vtkAlgorithm* consumer, int port = 0, int connection = 0);
 
-  /// For RequestUpdateExtent of consumers: of an input that has a stream asks for one slice of the
-  /// preview, for its field data, and returns true; else returns false.
-  static bool RequestFields(
-    vtkAlgorithm* consumer, vtkInformation* input, int port = 0, int connection = 0);
+  /// A function that says whether a filter passes on its input as it is, as a program may have such behind each of
+  /// its sources. Null: none does.
+  static void SetPassesOn(bool (*function)(vtkAlgorithm*));
 
   /// The extent of the first slice of a preview: to be asked for when only field data are needed beside the stream.
   static std::array<int, 6> GetFirstSlice(vtkInformation* input);
 
-  /// For RequestInformation of filters that change nothing but field data: passes the stream of
+  /// For Announce of filters that change nothing but field data: passes the stream of
   /// input port 0 on to output, or takes away the one of before.
   static void Pass(vtkAlgorithm* filter, vtkInformation* output);
 

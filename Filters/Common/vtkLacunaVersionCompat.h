@@ -7,7 +7,6 @@
 #include "vtkAlgorithm.h"
 #include "vtkInformation.h"
 #include "vtkInformationIntegerKey.h"
-#include "vtkLacunaRanks.h"
 #include "vtkVersionMacros.h"
 
 /// True when the user asked algorithm (or, where VTK can tell, one upstream) to stop, or its input is of
@@ -52,28 +51,4 @@ inline void vtkLacunaForgetAbort(vtkAlgorithm* algorithm)
   static_cast<void>(algorithm);
 #endif
 }
-
-/// In the public part of classes whose ranks meet (vtkLacunaMeeting.h, vtkLacunaExecution::RunAgreed): a
-/// stop, and that it is over, are no change of the filter when there are several ranks. The others do not
-/// know of it, and only a change of all may let them meet again.
-#define vtkLacunaKeepTimeAtStops()                                                                 \
-  void SetAbortExecute(vtkTypeBool stop) override                                                  \
-  {                                                                                                \
-    const vtkTimeStamp before = this->MTime;                                                       \
-    this->Superclass::SetAbortExecute(stop);                                                       \
-    this->MTime = vtkLacunaRanks().GetNumber() > 1 ? before : this->MTime;                         \
-  }                                                                                                \
-  vtkLacunaKeepTimeAtAbortOutput()
-#if VTK_VERSION_NUMBER >= VTK_VERSION_CHECK(9, 2, 20220823)
-#define vtkLacunaKeepTimeAtAbortOutput()                                                           \
-  void SetAbortOutput(bool stopped) override                                                       \
-  {                                                                                                \
-    const vtkTimeStamp before = this->MTime;                                                       \
-    this->Superclass::SetAbortOutput(stopped);                                                     \
-    this->MTime = vtkLacunaRanks().GetNumber() > 1 ? before : this->MTime;                         \
-  }                                                                                                \
-  static_assert(true, "")
-#else
-#define vtkLacunaKeepTimeAtAbortOutput() static_assert(true, "")
-#endif
 #endif

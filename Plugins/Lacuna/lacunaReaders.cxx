@@ -2,9 +2,9 @@
 /// @file
 /// What Lacuna and ParaView have to know of each other.
 #include "vtkLacunaAlgorithm.h"
-#include "vtkLacunaRequest.h"
-#include "vtkMetaReader.h"
+#include "vtkLacunaSliceStream.h"
 #include "vtkPVCompositeDataPipeline.h"
+#include "vtkPVPostFilter.h"
 #include "vtkSMSettings.h"
 
 #include <string>
@@ -25,14 +25,6 @@ bool Add(const std::string& group)
 }
 const bool Added = Add("RepresentedArrayListSettings") && Add("IOSettings");
 
-vtkAlgorithm* GetInnerReader(vtkAlgorithm* algorithm)
-{
-  auto* series = vtkMetaReader::SafeDownCast(algorithm);
-  return series ? series->GetReader() : nullptr;
-}
-
-const bool Known = (vtkLacunaRequest::SetInnerReader(GetInnerReader), true);
-
 // ParaView executes its pipelines on all ranks. Algorithms that a script makes are on its rank alone.
 bool ExecutesOnAllRanks(vtkAlgorithm* algorithm)
 {
@@ -40,4 +32,12 @@ bool ExecutesOnAllRanks(vtkAlgorithm* algorithm)
 }
 
 const bool Agreeing = (lacuna::Algorithm::SetExecutesOnAllRanks(ExecutesOnAllRanks), true);
+
+// One is behind each proxy.
+bool PassesOn(vtkAlgorithm* algorithm)
+{
+  return vtkPVPostFilter::SafeDownCast(algorithm) != nullptr;
+}
+
+const bool Passing = (vtkLacunaSliceStream::SetPassesOn(PassesOn), true);
 }

@@ -85,11 +85,6 @@ def update(filter, extent=None):
     return "\n".join(said)
 
 
-def of_all(word, text, is_own=False):
-    """An error of one rank is that of all, with the same text (those not on the base yet: that another one has stopped)."""
-    assert word in text or not is_own and "another rank has stopped" in text, (word, text)
-
-
 def refused(make, rank):
     """The input does not fit into the memory of the second rank alone."""
     source = wavelet(400)
@@ -99,7 +94,7 @@ def refused(make, rank):
         resource.setrlimit(resource.RLIMIT_AS, (lacuna_test.memory_of_process("VmSize") + (150 << 20), before[1]))
     text = update(filter, (0, 9, 0, 9, 0, 9))
     resource.setrlimit(resource.RLIMIT_AS, before)
-    of_all("256000000 bytes", text, rank == 1)
+    assert "256000000 bytes" in text, text
     # there is room now, but nobody knows on which ranks
     assert "change a property" in update(filter, (0, 9, 0, 9, 0, 9))
     source.SetWholeExtent(0, 20, 0, 20, 0, 20)
@@ -133,7 +128,7 @@ def unsound(make, rank):
             assert "not the same" in text, text
             continue
         if wrong != "short" or "100" not in text:
-            of_all("sound", text, rank == (0 if wrong == "nothing" else 1))
+            assert "sound" in text, text
 
 
 def partial(make, rank):
@@ -150,7 +145,7 @@ def partial(make, rank):
     filter = make(source, False)
     filter.SetInputConnection(producer.GetOutputPort())
     text = update(filter)
-    of_all("only the part 0 19 0 19 ", text)
+    assert "only the part 0 19 0 19 " in text, text
     filter.SetInputConnection(source.GetOutputPort())
     text = update(filter)
     assert not text, text
@@ -166,41 +161,50 @@ def unpaired(rank):
         assert "not the same" in text, text
 
 
+def error_of(proxy):
+    from lacuna.errors import PipelineError, raising
+    try:
+        with raising():
+            proxy.UpdatePipeline()
+        return ""
+    except PipelineError as error:
+        return str(error)
+
+
 def distributed(rank):
-    """Points of which ParaView gives each rank a part, or all to the first, whatever filters ask for."""
+    """Points of which ParaView gives each rank a part, or all to the first, whatever filters ask for: an error of all ranks."""
     import lacuna.plugin
     from paraview import simple as pv
     lacuna.plugin.load()
     points = pv.Elevation(Input=pv.Sphere(Radius=8))
     parts = pv.ExtractSurface(Input=pv.MergeBlocks(Input=pv.RedistributeDataSet(Input=points)))
     line = pv.PlotOverLine(Input=pv.Wavelet(), Point1=[-9, -9, -9], Point2=[9, 9, 9])
-    for source, on_all in ((parts, True), (line, False)):
-        for made, port in ((interpolator(), 0), (warp(wavelet(20), False), 2), (filler(), 3)):
-            made.SetInputConnection(port, source.GetClientSideObject().GetOutputPort(source.Port))
-            text = update(made)
-            assert not (on_all or rank == 1) or "is not the same on all ranks" in text or "another rank has stopped" in text, (made.GetClassName(), text)
     depth = pv.BSplineIsoRayCaster(Input=pv.SkullPhantom(Spacing=[2, 2, 2]), IsoValues=[500], ViewDirection=[-0.4, 0.2, -0.9])
     filled = pv.RBFHoleFiller(Input=depth, Smoothing=5, OutputMargin=30)
+    # Lacuna's serial filters: those with a grid are made by the first rank alone, the others by each that asks for all
+    model, plate = pv.DefectModel(Input=filled), pv.ImplantPlate(Input=filled)
+    for source, is_same in (parts, False), (line, False), (model, False), (plate, True), (points, True):
+        users = [pv.RBFInterpolator(Input=source, OutputSpacing=[2] * 3), pv.RBFImageWarp(Input=pv.Wavelet(), Landmarks=pv.Sphere(), Targets=source)]
+        if source is not plate:  # which has as many points as a fit takes minutes for
+            users.append(pv.RBFHoleFiller(Input=depth, ControlPoints=source))
+        for made in users:
+            text = error_of(made)
+            print(rank, made.GetXMLLabel(), source.GetXMLLabel(), repr(text), flush=True)
+            assert ("not the same on all ranks" in text) != is_same, (made.GetXMLLabel(), source.GetXMLLabel(), text)
+    # of the first rank's part a serial filter would make a result that looks whole
+    assert "not the same on all ranks" in error_of(pv.RBFSurface(Input=parts))
+    assert "not the same on all ranks" not in error_of(pv.RBFSurface(Input=line))
     selected(rank, pv, depth)
-    # Lacuna's serial filters: two answer all ranks by what the first has made, the others make it on each
-    for source, on_all in ((pv.DefectModel(Input=filled), False), (pv.ImplantPlate(Input=filled), True), (points, True)):
-        made = interpolator()
-        made.SetInputConnection(source.GetClientSideObject().GetOutputPort())
-        text = update(made)
-        assert ("is not the same on all ranks" not in text) == (on_all or rank == 0), (source.GetXMLLabel(), text)
-        assert source is not points or not text, text
 
 
 def selected(rank, pv, depth):
-    """Numbers of points of each rank's part are refused, however they come; those of pixels are the same on all."""
+    """Numbers of points of each rank's part are refused; those of pixels are the same on all."""
     from lacuna.vtkLacunaFiltersRadialBasis import vtkLacunaRBFHoleFiller
     surface = pv.DepthMapSurface(Input=depth)
     by_number = pv.IDSelectionSource(IDs=[each for k in range(300) for each in (k % 2, k)], FieldType="POINT")
     rows = [end for row in range(60, 70) for end in (100 * row + 40, 100 * row + 54)]
     by_pixel = pv.ThresholdSelectionSource(ArrayName="PixelId", Thresholds=rows, FieldType="POINT")
-    extracted = pv.ExtractSelection(Input=surface, Selection=by_number)
-    for selection, shown, said in ((by_number, surface, "numbers of points"), (by_number, None, "numbers of points"),
-                                   (None, extracted, "is not the same on all ranks"), (by_pixel, surface, "")):
+    for selection, shown, said in (by_number, surface, "numbers of points"), (by_number, None, "numbers of points"), (by_pixel, surface, ""):
         made = vtkLacunaRBFHoleFiller()
         made.SetInputConnection(depth.GetClientSideObject().GetOutputPort())
         for port, source in (1, shown), (2, selection):
@@ -209,25 +213,6 @@ def selected(rank, pv, depth):
         text = update(made)
         print(rank, repr(text), flush=True)
         assert said in text if said else not text, (said, text)
-
-
-def interpolator():
-    from lacuna.vtkLacunaFiltersRadialBasis import vtkLacunaRBFInterpolator
-    made = vtkLacunaRBFInterpolator()
-    made.SetOutputSpacing(2, 2, 2)
-    return made
-
-
-def filler():
-    from lacuna.vtkLacunaFiltersRadialBasis import vtkLacunaRBFHoleFiller
-    from lacuna.vtkLacunaFiltersRayCasting import vtkLacunaBSplineIsoRayCaster
-    source = wavelet(20)
-    caster = vtkLacunaBSplineIsoRayCaster()
-    caster.SetInputConnection(source.GetOutputPort())
-    caster.SetIsoValue(0, 100)
-    made = vtkLacunaRBFHoleFiller()
-    made.SetInputConnection(caster.GetOutputPort())
-    return made
 
 
 def transparent(rank):
@@ -248,7 +233,7 @@ def transparent(rank):
     filter.SetAttenuation(filter.OPACITY_FUNCTION)
     filter.SetOpacityFunction(opacity)
     text = update(filter)
-    of_all("attenuates", text, rank == 1)
+    assert "attenuates" in text, text
 
 
 def again(make, rank):
@@ -288,7 +273,7 @@ def absent(make, rank):
     filter = make(reader, False)
     silent = reader.AddObserver("ErrorEvent", lambda *_: None)
     text = update(filter)
-    assert "no input" in text or "not the same" in text, text
+    assert "RanksErrors1" in text, text
     reader.RemoveObserver(silent)
     write()
     reader.Modified()  # on both: what has failed together is tried again together
@@ -542,6 +527,7 @@ def run():
             print(f"rank {rank}: {make.__name__} {what.__name__}", flush=True)
             what(make, rank)
             controller.Barrier()
+    signal.alarm(SECONDS)
     unpaired(rank)
     distributed(rank)
     transparent(rank)
