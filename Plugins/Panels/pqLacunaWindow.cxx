@@ -1,23 +1,37 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pqLacunaWindow.h"
 
+#include "pqActiveObjects.h"
 #include "pqApplicationCore.h"
 #include "pqCoreUtilities.h"
 #include "pqFileDialog.h"
 #include "pqLacunaGuide.h"
 #include "pqLacunaSliders.h"
 #include "pqPipelineSource.h"
+#include "pqPointPickingHelper.h"
 #include "pqPropertyWidget.h"
 #include "pqProxyWidget.h"
+#include "pqRepresentation.h"
 #include "pqServerManagerModel.h"
+#include "pqView.h"
+#include "vtkCompositeDataIterator.h"
+#include "vtkCompositeDataSet.h"
+#include "vtkCompositeRepresentation.h"
+#include "vtkNew.h"
 #include "vtkPVArrayInformation.h"
 #include "vtkPVDataInformation.h"
 #include "vtkPVDataSetAttributesInformation.h"
 #include "vtkPVXMLElement.h"
+#include "vtkPolyData.h"
 #include "vtkPythonInterpreter.h"
+#include "vtkRenderWindowInteractor.h"
+#include "vtkRenderer.h"
 #include "vtkSMProperty.h"
 #include "vtkSMPropertyHelper.h"
+#include "vtkSMRenderViewProxy.h"
 #include "vtkSMSourceProxy.h"
+#include "vtkSmartPointer.h"
+#include "vtkStaticCellLocator.h"
 
 #include <QAction>
 #include <QApplication>
@@ -30,7 +44,10 @@
 #include <QMenuBar>
 #include <QTimer>
 
+#include <array>
 #include <cstring>
+#include <memory>
+#include <optional>
 
 namespace
 {
@@ -231,6 +248,154 @@ void AddUnits(const QWidget* panel)
 }
 }
 
+namespace
+{
+constexpr const char* Filler = "LacunaRBFHoleFiller";
+
+bool IsFiller(vtkSMProxy* proxy)
+{
+  return proxy && std::strcmp(proxy->GetXMLName(), Filler) == 0;
+}
+
+/// Shows what a Hole Filler would replace, as its panel says before Apply.
+void ShowMarks(const pqPropertyWidget* editor)
+{
+  const auto* source =
+    pqApplicationCore::instance()->getServerManagerModel()->findItem<pqPipelineSource*>(
+      editor->proxy());
+  if (!source || source->modifiedState() != pqProxy::UNINITIALIZED)
+  {
+    return;
+  }
+  vtkTypeUInt32 region = 0;
+  auto* chosen = editor->findChild<pqProxyWidget*>("ChosenProxyWidget");
+  if (chosen && chosen->proxy() && std::strcmp(chosen->proxy()->GetXMLName(), "None") != 0)
+  {
+    chosen->apply(); // to the region, which the filler does not have yet
+    region = chosen->proxy()->GetGlobalID();
+  }
+  pqLacunaWindow::Run(
+    QString("show_marks(%1, %2)").arg(editor->proxy()->GetGlobalID()).arg(region));
+}
+
+/// Shows it again when the region was changed and rests.
+void FollowMarks(const QWidget* panel)
+{
+  constexpr const char* done = "LacunaMarks";
+  for (auto* editor : panel->findChildren<pqPropertyWidget*>("DefectRegion"))
+  {
+    if (IsFiller(editor->proxy()) && !editor->property(done).toBool())
+    {
+      editor->setProperty(done, true);
+      auto* rest = new QTimer(editor);
+      rest->setSingleShot(true);
+      rest->setInterval(200); // ms
+      QObject::connect(rest, &QTimer::timeout, editor, [editor] { ShowMarks(editor); });
+      QObject::connect(
+        editor, &pqPropertyWidget::changeAvailable, rest, qOverload<>(&QTimer::start));
+      rest->start();
+    }
+  }
+}
+
+/// Where a line first meets a triangle of what is shown; what was found before stays if it is nearer.
+void Meet(vtkDataObject* shown, const double (&begin)[3], const double (&end)[3],
+  std::optional<std::array<double, 4>>& first)
+{
+  if (auto* parts = vtkCompositeDataSet::SafeDownCast(shown))
+  {
+    const auto part = vtk::TakeSmartPointer(parts->NewIterator());
+    for (part->InitTraversal(); !part->IsDoneWithTraversal(); part->GoToNextItem())
+    {
+      Meet(part->GetCurrentDataObject(), begin, end, first);
+    }
+    return;
+  }
+  auto* surface = vtkPolyData::SafeDownCast(shown);
+  if (!surface || surface->GetNumberOfCells() == 0)
+  {
+    return;
+  }
+  vtkNew<vtkStaticCellLocator> locator;
+  locator->SetDataSet(surface);
+  locator->BuildLocator();
+  double part = 0, place[3], inside[3];
+  int subcell = 0;
+  vtkIdType cell = -1;
+  if (locator->IntersectWithLine(begin, end, 1e-6, part, place, inside, subcell, cell) &&
+    (!first || part < (*first)[3]))
+  {
+    first = { place[0], place[1], place[2], part };
+  }
+}
+
+/// The place in space under the mouse on slices and depth maps that are shown where they lie. ParaView's P looks
+/// for it in the data behind them, pixels in a plane of their own, and so finds a point elsewhere.
+std::optional<std::array<double, 4>> PickInSpace(const pqView* view)
+{
+  std::optional<std::array<double, 4>> first;
+  auto* proxy = view ? vtkSMRenderViewProxy::SafeDownCast(view->getViewProxy()) : nullptr;
+  vtkRenderer* renderer = proxy ? proxy->GetRenderer() : nullptr;
+  if (!renderer || !proxy->GetInteractor())
+  {
+    return first;
+  }
+  const int* mouse = proxy->GetInteractor()->GetEventPosition();
+  double ends[2][3];
+  for (int side = 0; side < 2; ++side)
+  {
+    renderer->SetDisplayPoint(mouse[0], mouse[1], side);
+    renderer->DisplayToWorld();
+    double world[4];
+    renderer->GetWorldPoint(world);
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      ends[side][axis] = world[axis] / world[3];
+    }
+  }
+  for (pqRepresentation* each : view->getRepresentations())
+  {
+    auto* shown = each->isVisible()
+      ? vtkCompositeRepresentation::SafeDownCast(each->getProxy()->GetClientSideObject())
+      : nullptr;
+    const char* kind = shown ? shown->GetActiveRepresentationKey() : nullptr;
+    if (kind &&
+      (std::strcmp(kind, "Relief in Space") == 0 || std::strcmp(kind, "Slices in Space") == 0))
+    {
+      Meet(shown->GetRenderedDataObject(0), ends[0], ends[1], first);
+    }
+  }
+  return first;
+}
+
+/// Has P find what PickInSpace does.
+void MendPicking(const QWidget* panel)
+{
+  constexpr const char* done = "LacunaPicking";
+  for (auto* helper : panel->findChildren<pqPointPickingHelper*>())
+  {
+    if (helper->property(done).toBool())
+    {
+      continue;
+    }
+    helper->setProperty(done, true);
+    const auto busy = std::make_shared<bool>(false);
+    QObject::connect(helper, &pqPointPickingHelper::pick, helper,
+      [helper, busy]
+      {
+        const auto place =
+          *busy ? std::nullopt : PickInSpace(pqActiveObjects::instance().activeView());
+        if (place)
+        {
+          *busy = true;
+          Q_EMIT helper->pick((*place)[0], (*place)[1], (*place)[2]);
+          *busy = false;
+        }
+      });
+  }
+}
+}
+
 //------------------------------------------------------------------------------
 pqLacunaWindow::pqLacunaWindow(QObject* parent)
   : Superclass(parent)
@@ -265,7 +430,14 @@ void pqLacunaWindow::startup()
   QObject::connect(
     model, &pqServerManagerModel::modifiedStateChanged, this, &pqLacunaWindow::FollowState);
   QObject::connect(model, &pqServerManagerModel::preItemRemoved, this,
-    [this](pqServerManagerModelItem* item) { this->NewSources.remove(item); });
+    [this](pqServerManagerModelItem* item)
+    {
+      const auto* source = qobject_cast<pqPipelineSource*>(item);
+      if (this->NewSources.remove(item) && source && IsFiller(source->getProxy()))
+      {
+        Run("hide_marks()");
+      }
+    });
   QTimer::singleShot(0, this, &pqLacunaWindow::AddMenu); // when the window has its own
   qApp->installEventFilter(this);
 }
@@ -284,6 +456,8 @@ bool pqLacunaWindow::eventFilter(QObject* object, QEvent* event)
     if (const auto* panel = qobject_cast<pqProxyWidget*>(object))
     {
       AddUnits(panel);
+      FollowMarks(panel);
+      MendPicking(panel);
     }
   }
   return false;
@@ -370,7 +544,7 @@ void pqLacunaWindow::FollowState(pqServerManagerModelItem* item)
     {
       Run("offer_calibration(" + identity + ")");
     }
-    if (std::strcmp(proxy->GetXMLName(), "LacunaRBFHoleFiller") == 0)
+    if (IsFiller(proxy))
     {
       Run("place_regions(" + identity + ")");
     }
@@ -378,6 +552,10 @@ void pqLacunaWindow::FollowState(pqServerManagerModelItem* item)
   else if (source->modifiedState() == pqProxy::UNMODIFIED && this->NewSources.remove(item) &&
     (IsOurs(proxy) || HasHounsfieldUnits(proxy)))
   {
+    if (IsFiller(proxy))
+    {
+      Run("hide_marks()");
+    }
     Run("show_applied(" + identity + ")");
   }
 }
