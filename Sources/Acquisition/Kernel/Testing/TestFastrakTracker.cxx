@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "lacunaDeviceChoice.h"
 #include "lacunaEmulatedChannel.h"
 #include "lacunaExecution.h"
 #include "lacunaFastrakCommand.h"
-#include "lacunaFastrakDevice.h"
 #include "lacunaTestDevice.h"
 #include "lacunaTestPairing.h"
 
