@@ -5,7 +5,6 @@
 #define lacunaImplantPlate_h
 
 #include "lacunaPlanarTriangulation.h"
-#include "lacunaPlateHole.h"
 #include "lacunaPlateOutline.h"
 
 #include <limits>
