@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "vtkLacunaGridLayer.h"
+#include "lacunaGridLayer.h"
 
 #include "lacunaLandmarks.h"
 #include "lacunaMatrix4.h"
@@ -28,7 +28,7 @@ bool IsFlat(const std::vector<lacuna::Vec3>& points)
 
 // Whether the grid has a depth map's pixels as its points, in their plane, as ParaView's Transform
 // makes it of the map. With the relief of its depths (Warp By Scalar) it is a surface.
-bool IsPlaneOfDepthMap(vtkStructuredGrid* grid, const vtkLacunaGridLayer& layer)
+bool IsPlaneOfDepthMap(vtkStructuredGrid* grid, const lacuna::GridLayer& layer)
 {
   vtkPointData* data = grid->GetPointData();
   vtkDataArray* fitted = data->GetArray(vtkLacunaDepthMap::FittedName);
@@ -59,7 +59,7 @@ bool IsPlaneOfDepthMap(vtkStructuredGrid* grid, const vtkLacunaGridLayer& layer)
 }
 
 //------------------------------------------------------------------------------
-vtkLacunaGridLayer::vtkLacunaGridLayer(vtkStructuredGrid* grid)
+lacuna::GridLayer::GridLayer(vtkStructuredGrid* grid)
 {
   int dimensions[3];
   grid->GetDimensions(dimensions);

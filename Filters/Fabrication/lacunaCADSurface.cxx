@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "vtkLacunaIGESSurface.h"
+#include "lacunaCADSurface.h"
 
 #include "lacunaDefectContours.h"
 #include "lacunaExecution.h"
 #include "lacunaGridChecks.h"
+#include "lacunaGridLayer.h"
 #include "vtkDataArray.h"
 #include "vtkImageData.h"
 #include "vtkLacunaDepthMap.h"
-#include "vtkLacunaGridLayer.h"
 #include "vtkPointData.h"
 
 #include <algorithm>
@@ -105,7 +105,7 @@ double AtPixel(const std::vector<double>& parameters, double x)
 
 //------------------------------------------------------------------------------
 // A loop around pixels, in mm, as curves on the surface.
-vtkLacunaIGESSurface::Boundary MakeBoundary(const lacuna::SurfaceFit& fit, const lacuna::Loop& loop,
+lacuna::CADSurface::Boundary MakeBoundary(const lacuna::SurfaceFit& fit, const lacuna::Loop& loop,
   const lacuna::Vec2& spacing, double tolerance)
 {
   std::vector<lacuna::Vec3> points;
@@ -113,7 +113,7 @@ vtkLacunaIGESSurface::Boundary MakeBoundary(const lacuna::SurfaceFit& fit, const
   {
     points.push_back({ AtPixel(fit.U, p[0] / spacing[0]), AtPixel(fit.V, p[1] / spacing[1]), 0 });
   }
-  vtkLacunaIGESSurface::Boundary boundary;
+  lacuna::CADSurface::Boundary boundary;
   const lacuna::BSplineCurve outline = lacuna::InterpolateClosed(points, 1);
   const double pixel = std::max(spacing[0], spacing[1]);
   boundary.Parameters = lacuna::FitClosedCurve([&](double t) { return outline.Evaluate(t); },
@@ -144,9 +144,8 @@ bool Contains(const lacuna::Loop& loop, const lacuna::Vec2& p)
 }
 
 //------------------------------------------------------------------------------
-vtkLacunaIGESSurface vtkLacunaIGESSurface::FromMap(vtkImageData* image,
-  const lacuna::Matrix4& toFile, const lacuna::SurfaceFitOptions& options,
-  lacuna::Execution& execution)
+lacuna::CADSurface lacuna::CADSurface::FromMap(vtkImageData* image, const lacuna::Matrix4& toFile,
+  const lacuna::SurfaceFitOptions& options, lacuna::Execution& execution)
 {
   const vtkLacunaDepthMap map(image);
   vtkDataArray* fitted = image->GetPointData()->GetArray(vtkLacunaDepthMap::FittedName);
@@ -156,7 +155,7 @@ vtkLacunaIGESSurface vtkLacunaIGESSurface::FromMap(vtkImageData* image,
   const double column = static_cast<double>(extent[0] + rectangle.Column);
   const double row = static_cast<double>(extent[2] + rectangle.Row);
 
-  vtkLacunaIGESSurface result;
+  lacuna::CADSurface result;
   result.Column = rectangle.Column;
   result.Row = rectangle.Row;
   if (!map.IsPerspective())
@@ -191,16 +190,16 @@ vtkLacunaIGESSurface vtkLacunaIGESSurface::FromMap(vtkImageData* image,
 }
 
 //------------------------------------------------------------------------------
-vtkLacunaIGESSurface vtkLacunaIGESSurface::FromGrid(vtkStructuredGrid* grid,
+lacuna::CADSurface lacuna::CADSurface::FromGrid(vtkStructuredGrid* grid,
   const lacuna::Matrix4& toFile, const lacuna::SurfaceFitOptions& options,
   lacuna::Execution& execution)
 {
-  vtkLacunaGridLayer layer(grid);
+  lacuna::GridLayer layer(grid);
   for (lacuna::Vec3& p : layer.Points)
   {
     p = toFile.Point(p);
   }
-  vtkLacunaIGESSurface result;
+  lacuna::CADSurface result;
   lacuna::CheckRegular(layer.Size, layer.Points);
   result.Fit = lacuna::FitPoints(execution, layer.Size, layer.Points, options);
   result.Name = "Structured surface";
@@ -210,8 +209,7 @@ vtkLacunaIGESSurface vtkLacunaIGESSurface::FromGrid(vtkStructuredGrid* grid,
 }
 
 //------------------------------------------------------------------------------
-void vtkLacunaIGESSurface::FindOutlines(
-  vtkImageData* image, const lacuna::SurfaceFitOptions& options)
+void lacuna::CADSurface::FindOutlines(vtkImageData* image, const lacuna::SurfaceFitOptions& options)
 {
   vtkDataArray* filled = image->GetPointData()->GetArray(vtkLacunaDepthMap::FilledMaskName);
   if (!filled || filled->GetNumberOfComponents() != 1)

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// What of VTK data goes to an IGES file.
-#ifndef vtkLacunaIGESContent_h
-#define vtkLacunaIGESContent_h
+/// What of VTK data goes to a file for CAD.
+#ifndef lacunaCADContent_h
+#define lacunaCADContent_h
 
-#include "vtkLacunaIGESSurface.h"
+#include "lacunaCADSurface.h"
 
 #include <optional>
 #include <string>
@@ -13,8 +13,10 @@
 class vtkDataObject;
 class vtkPolyData;
 
+namespace lacuna
+{
 /// The surfaces, curves, lines and points of a data object and of all blocks in it, in one frame.
-class vtkLacunaIGESContent
+class CADContent
 {
 public:
   enum OutlineType
@@ -31,7 +33,7 @@ public:
   };
   struct Options
   {
-    lacuna::SurfaceFitOptions Fit;
+    SurfaceFitOptions Fit;
     int Outline = OutlineCurve;
     int Frame = AsGiven;
     bool AllowMirrored = false;
@@ -39,32 +41,32 @@ public:
   };
   struct Curve
   {
-    lacuna::BSplineCurve Shape;
+    BSplineCurve Shape;
     std::string Name;
   };
   struct Polygon
   {
-    std::vector<lacuna::Vec3> Corners;
+    std::vector<Vec3> Corners;
     std::string Name;
   };
   struct Line
   {
-    lacuna::Vec3 From;
-    lacuna::Vec3 To;
+    Vec3 From;
+    Vec3 To;
     std::string Name;
     bool IsAxis = false;
   };
   struct Point
   {
-    lacuna::Vec3 Position;
+    Vec3 Position;
     std::string Name;
   };
 
   /// Throws std::runtime_error or std::invalid_argument that says what cannot be written, and of
   /// which block; also when nothing at all is there to write.
-  vtkLacunaIGESContent(vtkDataObject* input, const Options& options, lacuna::Execution& execution);
+  CADContent(vtkDataObject* input, const Options& options, Execution& execution);
 
-  std::vector<vtkLacunaIGESSurface> Surfaces;
+  std::vector<CADSurface> Surfaces;
   std::vector<Curve> Curves;
   std::vector<Polygon> Polygons;
   std::vector<Line> Lines;
@@ -78,9 +80,9 @@ private:
   {
     vtkDataObject* Data;
     std::string Name; ///< of the block; empty when the input is no collection
-    std::optional<lacuna::Matrix4> PressToPatient;
+    std::optional<Matrix4> PressToPatient;
     std::string Lost; ///< of what lies in a press: why nothing leads to the patient; empty: it does
-    lacuna::Matrix4 ToFile = {};
+    Matrix4 ToFile = {};
     /// The input, before it was laid into a press, is marked as the patient's.
     bool IsPatient() const;
   };
@@ -89,8 +91,8 @@ private:
   void Collect(vtkDataObject* data, const std::string& name, bool nested);
   void PlaceItems();
   void DescribeFrame(const Item* press);
-  void AddItem(const Item& item, lacuna::Execution& execution);
-  void AddMap(const Item& item, lacuna::Execution& execution);
+  void AddItem(const Item& item, Execution& execution);
+  void AddMap(const Item& item, Execution& execution);
   void AddPolyData(const Item& item);
   void AddScrews(const Item& item);
   std::size_t CountThings() const;
@@ -99,4 +101,5 @@ private:
   Options Settings;
   std::vector<Item> Items;
 };
+}
 #endif
