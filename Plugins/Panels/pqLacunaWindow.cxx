@@ -17,10 +17,13 @@
 #include "vtkCompositeDataIterator.h"
 #include "vtkCompositeDataSet.h"
 #include "vtkCompositeRepresentation.h"
+#include "vtkGeometryRepresentation.h"
+#include "vtkMatrix4x4.h"
 #include "vtkNew.h"
 #include "vtkPVArrayInformation.h"
 #include "vtkPVDataInformation.h"
 #include "vtkPVDataSetAttributesInformation.h"
+#include "vtkPVLODActor.h"
 #include "vtkPVXMLElement.h"
 #include "vtkPolyData.h"
 #include "vtkPythonInterpreter.h"
@@ -44,10 +47,10 @@
 #include <QMenuBar>
 #include <QTimer>
 
+#include <algorithm>
 #include <array>
 #include <cstring>
 #include <memory>
-#include <optional>
 
 namespace
 {
@@ -298,47 +301,53 @@ void FollowMarks(const QWidget* panel)
   }
 }
 
-/// Where a line first meets a triangle of what is shown; what was found before stays if it is nearer.
-void Meet(vtkDataObject* shown, const double (&begin)[3], const double (&end)[3],
-  std::optional<std::array<double, 4>>& first)
+/// How far along a line from begin (0) to end (1) it first meets a triangle of what is shown; more than 1: nowhere.
+double Meet(vtkDataObject* shown, const double (&begin)[3], const double (&end)[3])
 {
+  double first = 2;
   if (auto* parts = vtkCompositeDataSet::SafeDownCast(shown))
   {
     const auto part = vtk::TakeSmartPointer(parts->NewIterator());
     for (part->InitTraversal(); !part->IsDoneWithTraversal(); part->GoToNextItem())
     {
-      Meet(part->GetCurrentDataObject(), begin, end, first);
+      first = std::min(first, Meet(part->GetCurrentDataObject(), begin, end));
     }
-    return;
+    return first;
   }
   auto* surface = vtkPolyData::SafeDownCast(shown);
-  if (!surface || surface->GetNumberOfCells() == 0)
+  if (surface && surface->GetNumberOfCells() > 0)
   {
-    return;
+    vtkNew<vtkStaticCellLocator> locator;
+    locator->SetDataSet(surface);
+    locator->BuildLocator();
+    double part = 0, place[3], inside[3];
+    int subcell = 0;
+    vtkIdType cell = -1;
+    if (locator->IntersectWithLine(begin, end, 1e-6, part, place, inside, subcell, cell))
+    {
+      first = part;
+    }
   }
-  vtkNew<vtkStaticCellLocator> locator;
-  locator->SetDataSet(surface);
-  locator->BuildLocator();
-  double part = 0, place[3], inside[3];
-  int subcell = 0;
-  vtkIdType cell = -1;
-  if (locator->IntersectWithLine(begin, end, 1e-6, part, place, inside, subcell, cell) &&
-    (!first || part < (*first)[3]))
-  {
-    first = { place[0], place[1], place[2], part };
-  }
+  return first;
 }
 
-/// The place in space under the mouse on slices and depth maps that are shown where they lie. ParaView's P looks
-/// for it in the data behind them, pixels in a plane of their own, and so finds a point elsewhere.
-std::optional<std::array<double, 4>> PickInSpace(const pqView* view)
+/// What is under the mouse on slices and depth maps that are shown where they lie.
+struct Hit
 {
-  std::optional<std::array<double, 4>> first;
+  bool IsOurs = false;  // nothing else is in front
+  bool IsKnown = false; // its data are in this process
+  std::array<double, 3> Place{};
+};
+
+/// ParaView's P looks in the data behind what is shown, pixels in a plane of their own, and finds a point elsewhere.
+Hit PickInSpace(const pqView* view)
+{
+  Hit hit;
   auto* proxy = view ? vtkSMRenderViewProxy::SafeDownCast(view->getViewProxy()) : nullptr;
   vtkRenderer* renderer = proxy ? proxy->GetRenderer() : nullptr;
   if (!renderer || !proxy->GetInteractor())
   {
-    return first;
+    return hit;
   }
   const int* mouse = proxy->GetInteractor()->GetEventPosition();
   double ends[2][3];
@@ -353,22 +362,45 @@ std::optional<std::array<double, 4>> PickInSpace(const pqView* view)
       ends[side][axis] = world[axis] / world[3];
     }
   }
+  double first = 2;
   for (pqRepresentation* each : view->getRepresentations())
   {
     auto* shown = each->isVisible()
       ? vtkCompositeRepresentation::SafeDownCast(each->getProxy()->GetClientSideObject())
       : nullptr;
     const char* kind = shown ? shown->GetActiveRepresentationKey() : nullptr;
-    if (kind &&
-      (std::strcmp(kind, "Relief in Space") == 0 || std::strcmp(kind, "Slices in Space") == 0))
+    auto* active =
+      shown ? vtkGeometryRepresentation::SafeDownCast(shown->GetActiveRepresentation()) : nullptr;
+    if (!kind || !active)
     {
-      Meet(shown->GetRenderedDataObject(0), ends[0], ends[1], first);
+      continue;
     }
+    const bool isOurs =
+      std::strcmp(kind, "Relief in Space") == 0 || std::strcmp(kind, "Slices in Space") == 0;
+    // the display may move what it shows
+    vtkNew<vtkMatrix4x4> back;
+    vtkMatrix4x4::Invert(active->GetActor()->GetMatrix(), back);
+    double local[2][4];
+    for (int side = 0; side < 2; ++side)
+    {
+      const double end[4] = { ends[side][0], ends[side][1], ends[side][2], 1 };
+      back->MultiplyPoint(end, local[side]);
+    }
+    vtkDataObject* data = shown->GetRenderedDataObject(0);
+    const double part = Meet(
+      data, { local[0][0], local[0][1], local[0][2] }, { local[1][0], local[1][1], local[1][2] });
+    hit.IsOurs = part < first ? isOurs : hit.IsOurs || (isOurs && !data && first > 1);
+    first = std::min(first, part);
   }
-  return first;
+  hit.IsKnown = first <= 1;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    hit.Place[axis] = ends[0][axis] + first * (ends[1][axis] - ends[0][axis]);
+  }
+  return hit;
 }
 
-/// Has P find what PickInSpace does.
+/// Makes P use PickInSpace.
 void MendPicking(const QWidget* panel)
 {
   constexpr const char* done = "LacunaPicking";
@@ -379,17 +411,25 @@ void MendPicking(const QWidget* panel)
       continue;
     }
     helper->setProperty(done, true);
+    // a line takes each pick for its next end, and a normal is no place
+    const bool isPlace = helper->getPickOption() == pqPointPickingHelper::Coordinates &&
+      !(helper->parent() && helper->parent()->inherits("pqLinePropertyWidget"));
     const auto busy = std::make_shared<bool>(false);
     QObject::connect(helper, &pqPointPickingHelper::pick, helper,
-      [helper, busy]
+      [helper, busy, isPlace]
       {
-        const auto place =
-          *busy ? std::nullopt : PickInSpace(pqActiveObjects::instance().activeView());
-        if (place)
+        const Hit hit = *busy ? Hit() : PickInSpace(pqActiveObjects::instance().activeView());
+        if (hit.IsOurs && hit.IsKnown && isPlace)
         {
           *busy = true;
-          Q_EMIT helper->pick((*place)[0], (*place)[1], (*place)[2]);
+          Q_EMIT helper->pick(hit.Place[0], hit.Place[1], hit.Place[2]);
           *busy = false;
+        }
+        else if (hit.IsOurs)
+        {
+          qWarning("Lacuna: what was picked is a place of the flat image, not of the picture in "
+                   "space. Pick on the "
+                   "surface that Depth Map Surface or Slice Planes makes of it");
         }
       });
   }

@@ -24,12 +24,13 @@ namespace
 {
 using Index = std::array<int, 3>; // of a point or cell of the image
 
-/// The point of the image: of a map by PixelId, of slices by place and slice.
+/// The point of the image, counted from its first: of a map by PixelId, of slices by place and slice.
 class PointFinder
 {
 public:
   PointFinder(vtkPolyData* surface, vtkImageData* image)
     : Surface(surface)
+    , Image(image)
     , Pixels(vtkIdTypeArray::SafeDownCast(surface->GetPointData()->GetArray("PixelId")))
     , Slices(surface->GetCellData()->GetArray("SliceNumber"))
     , Poses(image->GetFieldData()->GetArray("ImageToReference"))
@@ -52,8 +53,12 @@ public:
       return { static_cast<int>(pixel % this->Size[0]), static_cast<int>(pixel / this->Size[0]),
         0 };
     }
-    const int slice = static_cast<int>(this->Slices->GetTuple1(cell));
-    if (slice != this->Slice && slice >= 0 && slice < this->Poses->GetNumberOfTuples())
+    const auto slice = static_cast<vtkIdType>(this->Slices->GetTuple1(cell));
+    if (slice < 0 || slice >= this->Poses->GetNumberOfTuples())
+    {
+      return { -1, -1, -1 };
+    }
+    if (slice != this->Slice)
     {
       this->Slice = slice;
       double pose[16];
@@ -63,13 +68,31 @@ public:
     double place[4] = { 0, 0, 0, 1 };
     this->Surface->GetPoint(point, place);
     vtkMatrix4x4::MultiplyPoint(this->ReferenceToImage, place, place);
-    const auto whole = [](double x, int size)
-    { return static_cast<int>(std::clamp(std::round(x), 0.0, size - 1.0)); };
-    return { whole(place[0], this->Size[0]), whole(place[1], this->Size[1]), slice };
+    place[2] = static_cast<double>(slice);
+    const double* origin = this->Image->GetOrigin();
+    const double* spacing = this->Image->GetSpacing();
+    const int* extent = this->Image->GetExtent();
+    Index index;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const double number =
+        std::round((place[axis] - origin[axis]) / spacing[axis]) - extent[2 * axis];
+      if (!(number >= 0 && number < this->Size[axis]))
+      {
+        return { -1, -1, -1 };
+      }
+      index[axis] = static_cast<int>(number);
+    }
+    return index;
   }
 
+  /// Of a point (lessRows 0) or cell (1); -1: none, which ParaView does not select.
   vtkIdType GetNumber(const Index& index, int lessRows) const
   {
+    if (index[0] < 0)
+    {
+      return -1;
+    }
     const vtkIdType columns = std::max(this->Size[0] - lessRows, 1);
     const vtkIdType rows = std::max(this->Size[1] - lessRows, 1);
     return index[0] + columns * (index[1] + rows * index[2]);
@@ -78,11 +101,12 @@ public:
 
 private:
   vtkPolyData* Surface;
+  vtkImageData* Image;
   vtkIdTypeArray* Pixels;
   vtkDataArray* Slices;
   vtkDataArray* Poses;
   Index Size{};
-  int Slice = -1;
+  vtkIdType Slice = -1;
   double ReferenceToImage[16] = { 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1 };
 };
 }
@@ -120,7 +144,12 @@ int vtkLacunaSelectionIds::RequestData(
   auto* surface = vtkPolyData::GetData(inputs[0]);
   auto* output = vtkPolyData::GetData(outputs);
   output->ShallowCopy(surface);
-  PointFinder finder(surface, vtkImageData::GetData(inputs[1]));
+  auto* image = vtkImageData::GetData(inputs[1]);
+  if (!image)
+  {
+    return 1;
+  }
+  PointFinder finder(surface, image);
   if (!finder.IsPossible())
   {
     return 1;
@@ -145,7 +174,8 @@ int vtkLacunaSelectionIds::RequestData(
         lowest[axis] = std::min(lowest[axis], index[axis]);
       }
     }
-    for (int axis = 0; axis < 3; ++axis) // the last slice ends the cells before it
+    for (int axis = 0; axis < 3 && lowest[0] >= 0;
+         ++axis) // the last slice ends the cells before it
     {
       lowest[axis] = std::clamp(lowest[axis], 0, std::max(finder.GetSize()[axis] - 2, 0));
     }

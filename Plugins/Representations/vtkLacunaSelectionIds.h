@@ -4,8 +4,8 @@
  * @brief   numbers of the image's points and cells on what is shown of it in space
  *
  * For representations: input 0 is the surface that is shown, input 1 the image that it was made of, a depth
- * map (the surface has PixelId) or tracked slices (it has SliceNumber). Points and cells get the numbers of the
- * image's, by which ParaView selects: so what is selected with the mouse means what filters see.
+ * map (the surface has PixelId) or tracked slices (it has SliceNumber). Gives
+ * points and cells the ids that they have in the image. ParaView selects by these ids.
  */
 #ifndef vtkLacunaSelectionIds_h
 #define vtkLacunaSelectionIds_h
@@ -18,7 +18,7 @@ public:
   static vtkLacunaSelectionIds* New();
   vtkTypeMacro(vtkLacunaSelectionIds, vtkPolyDataAlgorithm);
 
-  /// Has a representation's geometry filter keep these numbers.
+  /// Makes a representation's geometry filter keep these ids.
   static void Use(vtkAlgorithm* geometry);
 
 protected:

@@ -7,8 +7,8 @@ import numpy as np
 from lacuna import demo_ultrasound, window
 from lacuna.data import fetch
 from paraview import servermanager
-from paraview.simple import (BSplineIsoRayCaster, ClearSelection, CreateRenderView, ExtractSelection, GetDisplayProperties, PhantomSweep, Render,
-                             ResetCamera, SelectSurfaceCells, SelectSurfacePoints, SkullPhantom)
+from paraview.simple import (BSplineIsoRayCaster, ClearSelection, CreateRenderView, ExtractSelection, ExtractSubset, GetDisplayProperties,
+                             PhantomSweep, Render, ResetCamera, SelectSurfaceCells, SelectSurfacePoints, SkullPhantom)
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
 LOW, HIGH = np.array([330, 310]), np.array([350, 335])  # pixels of the view
@@ -52,7 +52,8 @@ def index_of(image, points):
 skull = SkullPhantom(Spacing=[4, 4, 4])
 depth_map = BSplineIsoRayCaster(Input=skull, IsoValues=[500], ViewDirection=[-0.3, 0.2, -0.9], PixelSpacing=2)
 sweep = PhantomSweep(NumberOfSlices=12)
-for source, places, kind in ((depth_map, on_map, "Relief in Space"), (sweep, on_slices, "Slices in Space")):
+part = ExtractSubset(Input=sweep, VOI=[60, 250, 30, 200, 3, 9])  # its numbers do not begin at 0
+for source, places, kind in ((depth_map, on_map, "Relief in Space"), (sweep, on_slices, "Slices in Space"), (part, on_slices, "Slices in Space")):
     view = CreateRenderView()
     view.ViewSize = [600, 600]
     window.show(source, view)

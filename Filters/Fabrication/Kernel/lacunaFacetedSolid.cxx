@@ -39,50 +39,65 @@ double FindLargestDistance(
   return *std::max_element(distances.begin(), distances.end());
 }
 
-// Triangles that others with a higher number pass through.
+// Triangles that pass through others, and these.
 std::vector<std::int32_t> FindCrossings(
   const ClosedMesh& mesh, const TriangleTree& tree, Execution& execution)
 {
-  std::vector<char> crosses(mesh.Triangles.size(), 0);
+  std::vector<std::int32_t> others(mesh.Triangles.size());
   execution.For(static_cast<std::int64_t>(mesh.Triangles.size()), 256,
     [&](std::int64_t begin, std::int64_t end)
     {
       for (std::int64_t t = begin; t < end; ++t)
       {
-        crosses[t] = tree.FindCrossing(static_cast<std::int32_t>(t)) >= 0;
+        others[t] = tree.FindCrossing(static_cast<std::int32_t>(t));
       }
     });
   std::vector<std::int32_t> found;
-  for (std::size_t t = 0; t < crosses.size(); ++t)
+  for (std::size_t t = 0; t < others.size(); ++t)
   {
-    if (crosses[t])
+    if (others[t] >= 0)
     {
       found.push_back(static_cast<std::int32_t>(t));
+      found.push_back(others[t]);
     }
   }
   return found;
 }
 
-// Marks points of mesh in the boxes of these triangles of another one, and up to reach (mm) around.
-void FixAround(const ClosedMesh& other, const std::vector<std::int32_t>& triangles, double reach,
-  const ClosedMesh& mesh, std::vector<char>& fixed)
+// Marks points of mesh in the boxes of these triangles of another one, and up to reach (mm) around. Whether there are new ones.
+bool FixAround(const ClosedMesh& other, const std::vector<std::int32_t>& triangles, double reach,
+  const ClosedMesh& mesh, std::vector<char>& fixed, Execution& execution)
 {
+  std::vector<std::array<Vec3, 2>> boxes;
   for (const std::int32_t t : triangles)
   {
     const ClosedMesh::Triangle& ids = other.Triangles[t];
-    for (std::size_t p = 0; p < mesh.Points.size(); ++p)
+    std::array<Vec3, 2> box;
+    for (int axis = 0; axis < 3; ++axis)
     {
-      bool inside = true;
-      for (int axis = 0; axis < 3; ++axis)
-      {
-        const auto [low, high] = std::minmax(
-          { other.Points[ids[0]][axis], other.Points[ids[1]][axis], other.Points[ids[2]][axis] });
-        const double x = mesh.Points[p][axis];
-        inside = inside && x >= low - reach && x <= high + reach;
-      }
-      fixed[p] = fixed[p] || inside;
+      const auto [low, high] = std::minmax(
+        { other.Points[ids[0]][axis], other.Points[ids[1]][axis], other.Points[ids[2]][axis] });
+      box[0][axis] = low - reach;
+      box[1][axis] = high + reach;
     }
+    boxes.push_back(box);
   }
+  const auto before = std::count(fixed.begin(), fixed.end(), 1);
+  execution.For(static_cast<std::int64_t>(fixed.size()), 256,
+    [&](std::int64_t begin, std::int64_t end)
+    {
+      for (std::int64_t i = begin; i < end; ++i)
+      {
+        const Vec3& p = mesh.Points[i];
+        const auto holds = [&p](const std::array<Vec3, 2>& box)
+        {
+          return p[0] >= box[0][0] && p[0] <= box[1][0] && p[1] >= box[0][1] && p[1] <= box[1][1] &&
+            p[2] >= box[0][2] && p[2] <= box[1][2];
+        };
+        fixed[i] = fixed[i] || std::any_of(boxes.begin(), boxes.end(), holds) ? 1 : 0;
+      }
+    });
+  return std::count(fixed.begin(), fixed.end(), 1) > before;
 }
 
 //------------------------------------------------------------------------------
@@ -335,7 +350,11 @@ Simplified Simplify(const ClosedMesh& mesh, double tolerance, Execution& executi
         result.Crossing = GetPlace(result.Mesh, found);
         return result;
       }
-      FixAround(result.Mesh, found, FixedReach * (round + 1), mesh, fixed); // the rest may go
+      if (round + 1 == Rounds ||
+        !FixAround(result.Mesh, found, FixedReach * (round + 1), mesh, fixed, execution))
+      {
+        break;
+      }
     }
   }
   execution.SetStage(0.9, 1);

@@ -16,7 +16,7 @@ namespace lacuna
 /// corrected by moving new points by at most 0.3 tolerance. The topology stays. mesh is closed, and each of its points has
 /// one fan of triangles (SeparateFans). Nobody looks here whether the result passes through itself, nor how
 /// far it is from mesh between the samples.
-/// fixed, one for each point or empty: points that stay, with all edges at them.
+/// fixed, one for each point or empty: points that stay, and the edges between them and others do not collapse.
 ClosedMesh SimplifyMesh(const ClosedMesh& mesh, double tolerance, Execution& execution,
   const std::vector<char>& fixed = {});
 

@@ -369,8 +369,9 @@ def hole_of_map(source):
 
 
 def show_marks(identity, region=0):
-    """Shows what a new RBF Hole Filler would replace, before Apply: its global ID, and that of the region chosen, or 0. Never raises; the
-    maps of a remote server are not fetched for it.
+    """Shows what a region of a new RBF Hole Filler would replace, before Apply: the filler's global ID, and that of the region, or 0.
+
+    Nothing is shown where the defect is marked by arrays or selections too, and of a remote server. Never raises.
     """
     hide_marks()
     try:
@@ -378,6 +379,9 @@ def show_marks(identity, region=0):
         if servermanager.ActiveConnection.IsRemote() or view is None or not hasattr(view, "GetActiveCamera"):
             return
         filler = servermanager._getPyProxy(session.GetRemoteObject(identity))
+        arrays = [servermanager.vtkSMPropertyHelper(filler.SMProxy, name).GetAsString() for name in ("DefectArray", "SupportArray")]
+        if any(arrays) or filler.Surface or filler.Selection:
+            return
         region = session.GetRemoteObject(region) if region else None
         filled = _fill_coarsely(fetch(filler.Input), region and region.GetClientSideObject())
         if filled.GetPointData().GetArray("FilledMask") is None:
@@ -395,33 +399,41 @@ def show_marks(identity, region=0):
         source.GetClientSideObject().SetOutput(marked.GetOutput())
         source.UpdatePipeline()
         display = servermanager.CreateRepresentation(source, view)
+        _marks.append((view, source, display))
+        view.SMProxy.GetProperty("Representations").RemoveProxy(display.SMProxy)
+        view.SMProxy.UpdateVTKObjects()
+        view.SMProxy.GetProperty("HiddenRepresentations").AddProxy(display.SMProxy)  # not part of a state
+        view.SMProxy.UpdateVTKObjects()
         display.Representation = "Surface"
         display.ColorArrayName = [None, ""]
         display.AmbientColor = display.DiffuseColor = list(MARKED)
         towards = -_matrix_of(filled)[:3, 2]
         display.Position = list(towards / np.linalg.norm(towards))  # 1 mm before bone that it covers
-        view.SMProxy.GetProperty("Representations").RemoveProxy(display.SMProxy)
-        view.SMProxy.UpdateVTKObjects()
-        view.SMProxy.GetProperty("HiddenRepresentations").AddProxy(display.SMProxy)  # not part of a state
-        view.SMProxy.UpdateVTKObjects()
-        _marks.append((view, source, display))
+        display.Pickable = 0
         pv.Render(view)
     except Exception as error:  # pylint: disable=broad-exception-caught
+        hide_marks()
         import paraview
-        paraview.print_warning(f"Lacuna: what will be replaced is not shown, since {error}")
+        paraview.print_warning(f"Lacuna: Apply shows what is replaced; beforehand it cannot be shown, since {error}")
 
 
 _marks = []  # view, source and display of what show_marks shows
 
 
 def hide_marks():
-    """Takes away what show_marks shows."""
+    """Takes away what show_marks shows. Never raises: the view may be closed."""
     while _marks:
         view, _source, display = _marks.pop()
-        view.SMProxy.GetProperty("HiddenRepresentations").RemoveProxy(display.SMProxy)
-        view.SMProxy.UpdateVTKObjects()
-        if view.SMProxy in [each.SMProxy for each in pv.GetRenderViews()]:
+        try:
+            if view.SMProxy not in [each.SMProxy for each in pv.GetRenderViews()]:
+                continue
+            for name in ("Representations", "HiddenRepresentations"):
+                view.SMProxy.GetProperty(name).RemoveProxy(display.SMProxy)
+            view.SMProxy.UpdateVTKObjects()
             pv.Render(view)
+        except Exception as error:  # pylint: disable=broad-exception-caught
+            import paraview
+            paraview.print_warning(f"Lacuna: what was marked may still be seen, since {error}; Delete the view to be rid of it")
 
 
 def update_quietly(algorithm):
