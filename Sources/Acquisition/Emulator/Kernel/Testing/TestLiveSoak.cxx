@@ -356,9 +356,9 @@ TEST_P(LiveSoak, NoFrameIsLostOrMispaired)
   {
     GTEST_SKIP() << "the sanitizer makes frames late";
   }
-  if ((lost > 0 || mispaired > 0) && stall > HalfFrame / 2)
+  if ((lost > 0 || mispaired > 0) && stall > HalfFrame)
   {
-    GTEST_SKIP() << "no verdict: this computer stood still for longer than a quarter of a frame";
+    GTEST_SKIP() << "no verdict: this computer stood still for longer than half a frame";
   }
   EXPECT_EQ(lost, 0);
   EXPECT_EQ(mispaired, 0);
