@@ -2,12 +2,12 @@
 #include "vtkLacunaIGESWriter.h"
 
 #include "lacunaAtomicFile.h"
+#include "lacunaCADContent.h"
 #include "lacunaIGESDocument.h"
 #include "lacunaParameterText.h"
 #include "lacunaPrintableText.h"
 #include "vtkInformation.h"
 #include "vtkLacunaExecution.h"
-#include "vtkLacunaIGESContent.h"
 #include "vtkLacunaProvenance.h"
 #include "vtkLogger.h"
 #include "vtkNew.h"
@@ -56,7 +56,7 @@ public:
     : Document(document)
   {
   }
-  void Add(const vtkLacunaIGESSurface& surface)
+  void Add(const lacuna::CADSurface& surface)
   {
     lacuna::IGESDocument::Attributes attributes = this->Attributes(SurfaceLevel, "SURFACE");
     const std::vector<std::int64_t> name{ this->Document.AddName(surface.Name) };
@@ -72,7 +72,7 @@ public:
       const std::int64_t whole = this->Document.AddSurface(surface.Fit.Surface, part);
       std::vector<lacuna::IGESDocument::Boundary> boundaries;
       boundaries.reserve(piece.size());
-      for (const vtkLacunaIGESSurface::Boundary& boundary : piece)
+      for (const lacuna::CADSurface::Boundary& boundary : piece)
       {
         boundaries.push_back({ &boundary.Parameters, &boundary.Space });
       }
@@ -80,25 +80,25 @@ public:
       this->Document.AddTrimmedSurface(whole, boundaries, attributes, name);
     }
   }
-  void Add(const vtkLacunaIGESContent::Curve& curve)
+  void Add(const lacuna::CADContent::Curve& curve)
   {
     const lacuna::IGESDocument::Attributes attributes = this->Attributes(CurveLevel, "CURVE");
     this->Document.AddCurve(curve.Shape, attributes, { this->Document.AddName(curve.Name) });
   }
-  void Add(const vtkLacunaIGESContent::Polygon& polygon)
+  void Add(const lacuna::CADContent::Polygon& polygon)
   {
     const lacuna::IGESDocument::Attributes attributes = this->Attributes(CurveLevel, "POLYGON");
     this->Document.AddPolygon(
       polygon.Corners, attributes, { this->Document.AddName(polygon.Name) });
   }
-  void Add(const vtkLacunaIGESContent::Line& line)
+  void Add(const lacuna::CADContent::Line& line)
   {
     const bool axis = line.IsAxis;
     const lacuna::IGESDocument::Attributes attributes =
       this->Attributes(axis ? PointLevel : CurveLevel, axis ? "AXIS" : "LINE");
     this->Document.AddLine(line.From, line.To, attributes, { this->Document.AddName(line.Name) });
   }
-  void Add(const vtkLacunaIGESContent::Point& point)
+  void Add(const lacuna::CADContent::Point& point)
   {
     const lacuna::IGESDocument::Attributes attributes = this->Attributes(PointLevel, "POINT");
     this->Document.AddPoint(point.Position, attributes, { this->Document.AddName(point.Name) });
@@ -124,11 +124,11 @@ private:
 
 //------------------------------------------------------------------------------
 // Lines for people: what there is, where it comes from, and how it was made.
-void Describe(const vtkLacunaIGESContent& content, std::vector<std::string>& text)
+void Describe(const lacuna::CADContent& content, std::vector<std::string>& text)
 {
   text.insert(text.end(), content.Description.begin(), content.Description.end());
   text.emplace_back(Levels);
-  for (const vtkLacunaIGESSurface& surface : content.Surfaces)
+  for (const lacuna::CADSurface& surface : content.Surfaces)
   {
     const lacuna::BSplineSurface& s = surface.Fit.Surface;
     text.push_back("Surface '" + surface.Name + "': bicubic B-spline, " +
@@ -182,13 +182,13 @@ void vtkLacunaIGESWriter::WriteFile()
   }
   vtkLacunaExecution execution(this);
   execution.SetStage(0, 0.9);
-  vtkLacunaIGESContent::Options options;
+  lacuna::CADContent::Options options;
   options.Fit.Tolerance = this->Tolerance;
   options.Outline = this->DefectOutline;
   options.Frame = this->Coordinates;
   options.AllowMirrored = this->AllowMirrored;
   options.SkipUnsupported = this->SkipUnsupported;
-  const vtkLacunaIGESContent content(input, options, execution);
+  const lacuna::CADContent content(input, options, execution);
 
   lacuna::IGESHeader header;
   const std::string version = std::string("Lacuna ") + vtkLacunaProvenance::GetVersion();
@@ -232,7 +232,7 @@ void vtkLacunaIGESWriter::WriteFile()
   lacuna::WriteFileAtomically(this->FileName, text);
   this->UpdateProgress(1); // no longer to be stopped: the file is there
 
-  for (const vtkLacunaIGESSurface& surface : content.Surfaces)
+  for (const lacuna::CADSurface& surface : content.Surfaces)
   {
     this->MaximumDeviation = std::max(this->MaximumDeviation, surface.Fit.MaximumDeviation);
   }

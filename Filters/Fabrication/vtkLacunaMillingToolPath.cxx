@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkLacunaMillingToolPath.h"
 
+#include "lacunaGridLayer.h"
 #include "lacunaMaterialRemoval.h"
 #include "lacunaParameterText.h"
 #include "lacunaToolPath.h"
@@ -12,7 +13,6 @@
 #include "vtkLacunaArrays.h"
 #include "vtkLacunaCoordinates.h"
 #include "vtkLacunaFieldData.h"
-#include "vtkLacunaGridLayer.h"
 #include "vtkLacunaMirrored.h"
 #include "vtkLacunaPressPosition.h"
 #include "vtkNew.h"
@@ -326,7 +326,7 @@ void vtkLacunaMillingToolPath::Make(const lacuna::Ports& ports, vtkLacunaExecuti
     vtkWarningMacro("the surface is a mirror image of the patient (field data Mirrored), and so is "
                     "what is milled with this path");
   }
-  vtkLacunaGridLayer layer(grid);
+  lacuna::GridLayer layer(grid);
   const lacuna::MillSurface surface(layer.Size, std::move(layer.Points));
   lacuna::ToolPathOptions options;
   options.Tool = { static_cast<lacuna::ToolShape>(this->ToolShape), this->ToolRadius };

@@ -42,7 +42,7 @@ struct vtkLacunaCalibrationPick
 {
   vtkIdType Slice;
   lacuna::CalibrationPick Pick;
-  double Score = 1; ///< of a spot that was found: lacunaSpotDetection.h
+  double Score = 1; ///< of a spot that was found: lacunaSpotTracking.h
 };
 
 namespace vtkLacunaCalibrationPicks

@@ -27,7 +27,7 @@
  * vtkPointSet whose points are (column, row, slice), as a selection of the slices' points has them.
  * Optional: for SingleWall the floor's line is looked for in each slice (lacunaWallDetection.h), for
  * ThreeWires the bright spot in each slice of WireRanges, for PointTarget that in all slices
- * (lacunaSpotDetection.h, lacunaSpotTracking.h).
+ * (lacunaSpotTracking.h).
  *
  * Output port 0: the slices, calibrated: field data ImageToProbe and ImageToReference, whose reference
  * frame is the tracker. Port 1: vtkTable of the picks with their places in the phantom (PhantomX,

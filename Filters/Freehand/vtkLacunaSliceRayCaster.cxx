@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkLacunaSliceRayCaster.h"
 
-#include "lacunaGreyRange.h"
 #include "lacunaMemory.h"
 #include "lacunaParameterText.h"
 #include "lacunaSliceFingerprint.h"

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkLacunaSweptVolume.h"
 
-#include "lacunaGrowingVolume.h"
 #include "lacunaMemory.h"
 #include "lacunaParameterText.h"
+#include "lacunaSweptVolume.h"
 #include "vtkCharArray.h"
 #include "vtkDataArray.h"
 #include "vtkFieldData.h"

@@ -41,7 +41,7 @@
  * be found; the volume would need more than MemoryLimit. What a replay has not shown yet is no
  * error.
  *
- * @sa lacunaSweptVolume.h, lacunaSlicePair.h, lacunaFootprint.h, lacunaVolumeGrid.h
+ * @sa lacunaSweptVolume.h, lacunaSlicePair.h, lacunaVolumeGrid.h
  */
 #ifndef vtkLacunaSweptVolume_h
 #define vtkLacunaSweptVolume_h

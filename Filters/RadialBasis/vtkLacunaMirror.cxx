@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkLacunaMirror.h"
 
-#include "lacunaMapSymmetry.h"
 #include "lacunaMirroredMap.h"
 #include "lacunaMirroredVolume.h"
 #include "lacunaParameterText.h"

@@ -11,7 +11,7 @@
  *
  * Input: a volume or slice (active point scalars of one component, any real type and direction;
  * vtkValidPointMask is respected) or a parallel depth map (vtkLacunaDepthMap), known by its Depth and
- * ImageToWorld. How the plane is found is in lacunaVolumeSymmetry.h and lacunaMapSymmetry.h.
+ * ImageToWorld. How the plane is found is in lacunaVolumeSymmetry.h and lacunaMirroredMap.h.
  *
  * Output 0 on the grid of the input, of a volume: Mirrored<name> (type of the input, active scalars;
  * the lowest value of the input where the mirror image is not known), vtkValidPointMask (char),

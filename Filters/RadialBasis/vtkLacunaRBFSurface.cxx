@@ -6,7 +6,6 @@
 #include "lacunaOutlines.h"
 #include "lacunaParameterText.h"
 #include "lacunaPointNormals.h"
-#include "lacunaSurfaceDistance.h"
 #include "lacunaSurfaceFollower.h"
 #include "lacunaSurfaceSpline.h"
 #include "vtkDataSet.h"

@@ -4,7 +4,6 @@
 #include "lacunaIsoRayCaster.h"
 #include "lacunaMemory.h"
 #include "lacunaParameterText.h"
-#include "lacunaPerspective.h"
 
 #include "vtkCharArray.h"
 #include "vtkDataArray.h"

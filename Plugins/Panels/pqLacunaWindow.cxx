@@ -1,23 +1,40 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pqLacunaWindow.h"
 
+#include "pqActiveObjects.h"
 #include "pqApplicationCore.h"
 #include "pqCoreUtilities.h"
 #include "pqFileDialog.h"
 #include "pqLacunaGuide.h"
 #include "pqLacunaSliders.h"
 #include "pqPipelineSource.h"
+#include "pqPointPickingHelper.h"
 #include "pqPropertyWidget.h"
 #include "pqProxyWidget.h"
+#include "pqRepresentation.h"
 #include "pqServerManagerModel.h"
+#include "pqView.h"
+#include "vtkCompositeDataIterator.h"
+#include "vtkCompositeDataSet.h"
+#include "vtkCompositeRepresentation.h"
+#include "vtkGeometryRepresentation.h"
+#include "vtkMatrix4x4.h"
+#include "vtkNew.h"
 #include "vtkPVArrayInformation.h"
 #include "vtkPVDataInformation.h"
 #include "vtkPVDataSetAttributesInformation.h"
+#include "vtkPVLODActor.h"
 #include "vtkPVXMLElement.h"
+#include "vtkPolyData.h"
 #include "vtkPythonInterpreter.h"
+#include "vtkRenderWindowInteractor.h"
+#include "vtkRenderer.h"
 #include "vtkSMProperty.h"
 #include "vtkSMPropertyHelper.h"
+#include "vtkSMRenderViewProxy.h"
 #include "vtkSMSourceProxy.h"
+#include "vtkSmartPointer.h"
+#include "vtkStaticCellLocator.h"
 
 #include <QAction>
 #include <QApplication>
@@ -30,7 +47,10 @@
 #include <QMenuBar>
 #include <QTimer>
 
+#include <algorithm>
+#include <array>
 #include <cstring>
+#include <memory>
 
 namespace
 {
@@ -231,6 +251,191 @@ void AddUnits(const QWidget* panel)
 }
 }
 
+namespace
+{
+constexpr const char* Filler = "LacunaRBFHoleFiller";
+
+bool IsFiller(vtkSMProxy* proxy)
+{
+  return proxy && std::strcmp(proxy->GetXMLName(), Filler) == 0;
+}
+
+/// Shows what a Hole Filler would replace, as its panel says before Apply.
+void ShowMarks(const pqPropertyWidget* editor)
+{
+  const auto* source =
+    pqApplicationCore::instance()->getServerManagerModel()->findItem<pqPipelineSource*>(
+      editor->proxy());
+  if (!source || source->modifiedState() != pqProxy::UNINITIALIZED)
+  {
+    return;
+  }
+  vtkTypeUInt32 region = 0;
+  auto* chosen = editor->findChild<pqProxyWidget*>("ChosenProxyWidget");
+  if (chosen && chosen->proxy() && std::strcmp(chosen->proxy()->GetXMLName(), "None") != 0)
+  {
+    chosen->apply(); // to the region, which the filler does not have yet
+    region = chosen->proxy()->GetGlobalID();
+  }
+  pqLacunaWindow::Run(
+    QString("show_marks(%1, %2)").arg(editor->proxy()->GetGlobalID()).arg(region));
+}
+
+/// Shows it again when the region was changed and rests.
+void FollowMarks(const QWidget* panel)
+{
+  constexpr const char* done = "LacunaMarks";
+  for (auto* editor : panel->findChildren<pqPropertyWidget*>("DefectRegion"))
+  {
+    if (IsFiller(editor->proxy()) && !editor->property(done).toBool())
+    {
+      editor->setProperty(done, true);
+      auto* rest = new QTimer(editor);
+      rest->setSingleShot(true);
+      rest->setInterval(200); // ms
+      QObject::connect(rest, &QTimer::timeout, editor, [editor] { ShowMarks(editor); });
+      QObject::connect(
+        editor, &pqPropertyWidget::changeAvailable, rest, qOverload<>(&QTimer::start));
+      rest->start();
+    }
+  }
+}
+
+/// How far along a line from begin (0) to end (1) it first meets a triangle of what is shown; more than 1: nowhere.
+double Meet(vtkDataObject* shown, const double (&begin)[3], const double (&end)[3])
+{
+  double first = 2;
+  if (auto* parts = vtkCompositeDataSet::SafeDownCast(shown))
+  {
+    const auto part = vtk::TakeSmartPointer(parts->NewIterator());
+    for (part->InitTraversal(); !part->IsDoneWithTraversal(); part->GoToNextItem())
+    {
+      first = std::min(first, Meet(part->GetCurrentDataObject(), begin, end));
+    }
+    return first;
+  }
+  auto* surface = vtkPolyData::SafeDownCast(shown);
+  if (surface && surface->GetNumberOfCells() > 0)
+  {
+    vtkNew<vtkStaticCellLocator> locator;
+    locator->SetDataSet(surface);
+    locator->BuildLocator();
+    double part = 0, place[3], inside[3];
+    int subcell = 0;
+    vtkIdType cell = -1;
+    if (locator->IntersectWithLine(begin, end, 1e-6, part, place, inside, subcell, cell))
+    {
+      first = part;
+    }
+  }
+  return first;
+}
+
+/// What is under the mouse on slices and depth maps that are shown where they lie.
+struct Hit
+{
+  bool IsOurs = false;  // nothing else is in front
+  bool IsKnown = false; // its data are in this process
+  std::array<double, 3> Place{};
+};
+
+/// ParaView's P looks in the data behind what is shown, pixels in a plane of their own, and finds a point elsewhere.
+Hit PickInSpace(const pqView* view)
+{
+  Hit hit;
+  auto* proxy = view ? vtkSMRenderViewProxy::SafeDownCast(view->getViewProxy()) : nullptr;
+  vtkRenderer* renderer = proxy ? proxy->GetRenderer() : nullptr;
+  if (!renderer || !proxy->GetInteractor())
+  {
+    return hit;
+  }
+  const int* mouse = proxy->GetInteractor()->GetEventPosition();
+  double ends[2][3];
+  for (int side = 0; side < 2; ++side)
+  {
+    renderer->SetDisplayPoint(mouse[0], mouse[1], side);
+    renderer->DisplayToWorld();
+    double world[4];
+    renderer->GetWorldPoint(world);
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      ends[side][axis] = world[axis] / world[3];
+    }
+  }
+  double first = 2;
+  for (pqRepresentation* each : view->getRepresentations())
+  {
+    auto* shown = each->isVisible()
+      ? vtkCompositeRepresentation::SafeDownCast(each->getProxy()->GetClientSideObject())
+      : nullptr;
+    const char* kind = shown ? shown->GetActiveRepresentationKey() : nullptr;
+    auto* active =
+      shown ? vtkGeometryRepresentation::SafeDownCast(shown->GetActiveRepresentation()) : nullptr;
+    if (!kind || !active)
+    {
+      continue;
+    }
+    const bool isOurs =
+      std::strcmp(kind, "Relief in Space") == 0 || std::strcmp(kind, "Slices in Space") == 0;
+    // the display may move what it shows
+    vtkNew<vtkMatrix4x4> back;
+    vtkMatrix4x4::Invert(active->GetActor()->GetMatrix(), back);
+    double local[2][4];
+    for (int side = 0; side < 2; ++side)
+    {
+      const double end[4] = { ends[side][0], ends[side][1], ends[side][2], 1 };
+      back->MultiplyPoint(end, local[side]);
+    }
+    vtkDataObject* data = shown->GetRenderedDataObject(0);
+    const double part = Meet(
+      data, { local[0][0], local[0][1], local[0][2] }, { local[1][0], local[1][1], local[1][2] });
+    hit.IsOurs = part < first ? isOurs : hit.IsOurs || (isOurs && !data && first > 1);
+    first = std::min(first, part);
+  }
+  hit.IsKnown = first <= 1;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    hit.Place[axis] = ends[0][axis] + first * (ends[1][axis] - ends[0][axis]);
+  }
+  return hit;
+}
+
+/// Makes P use PickInSpace.
+void MendPicking(const QWidget* panel)
+{
+  constexpr const char* done = "LacunaPicking";
+  for (auto* helper : panel->findChildren<pqPointPickingHelper*>())
+  {
+    if (helper->property(done).toBool())
+    {
+      continue;
+    }
+    helper->setProperty(done, true);
+    // a line takes each pick for its next end, and a normal is no place
+    const bool isPlace = helper->getPickOption() == pqPointPickingHelper::Coordinates &&
+      !(helper->parent() && helper->parent()->inherits("pqLinePropertyWidget"));
+    const auto busy = std::make_shared<bool>(false);
+    QObject::connect(helper, &pqPointPickingHelper::pick, helper,
+      [helper, busy, isPlace]
+      {
+        const Hit hit = *busy ? Hit() : PickInSpace(pqActiveObjects::instance().activeView());
+        if (hit.IsOurs && hit.IsKnown && isPlace)
+        {
+          *busy = true;
+          Q_EMIT helper->pick(hit.Place[0], hit.Place[1], hit.Place[2]);
+          *busy = false;
+        }
+        else if (hit.IsOurs)
+        {
+          qWarning("Lacuna: what was picked is a place of the flat image, not of the picture in "
+                   "space. Pick on the "
+                   "surface that Depth Map Surface or Slice Planes makes of it");
+        }
+      });
+  }
+}
+}
+
 //------------------------------------------------------------------------------
 pqLacunaWindow::pqLacunaWindow(QObject* parent)
   : Superclass(parent)
@@ -265,7 +470,14 @@ void pqLacunaWindow::startup()
   QObject::connect(
     model, &pqServerManagerModel::modifiedStateChanged, this, &pqLacunaWindow::FollowState);
   QObject::connect(model, &pqServerManagerModel::preItemRemoved, this,
-    [this](pqServerManagerModelItem* item) { this->NewSources.remove(item); });
+    [this](pqServerManagerModelItem* item)
+    {
+      const auto* source = qobject_cast<pqPipelineSource*>(item);
+      if (this->NewSources.remove(item) && source && IsFiller(source->getProxy()))
+      {
+        Run("hide_marks()");
+      }
+    });
   QTimer::singleShot(0, this, &pqLacunaWindow::AddMenu); // when the window has its own
   qApp->installEventFilter(this);
 }
@@ -284,6 +496,8 @@ bool pqLacunaWindow::eventFilter(QObject* object, QEvent* event)
     if (const auto* panel = qobject_cast<pqProxyWidget*>(object))
     {
       AddUnits(panel);
+      FollowMarks(panel);
+      MendPicking(panel);
     }
   }
   return false;
@@ -370,7 +584,7 @@ void pqLacunaWindow::FollowState(pqServerManagerModelItem* item)
     {
       Run("offer_calibration(" + identity + ")");
     }
-    if (std::strcmp(proxy->GetXMLName(), "LacunaRBFHoleFiller") == 0)
+    if (IsFiller(proxy))
     {
       Run("place_regions(" + identity + ")");
     }
@@ -378,6 +592,10 @@ void pqLacunaWindow::FollowState(pqServerManagerModelItem* item)
   else if (source->modifiedState() == pqProxy::UNMODIFIED && this->NewSources.remove(item) &&
     (IsOurs(proxy) || HasHounsfieldUnits(proxy)))
   {
+    if (IsFiller(proxy))
+    {
+      Run("hide_marks()");
+    }
     Run("show_applied(" + identity + ")");
   }
 }

@@ -2,6 +2,7 @@
 #include "vtkLacunaSlicesRepresentation.h"
 
 #include "vtkInformation.h"
+#include "vtkLacunaSelectionIds.h"
 #include "vtkLacunaSlicePlanes.h"
 #include "vtkObjectFactory.h"
 #include "vtkProperty.h"
@@ -21,7 +22,9 @@ vtkStandardNewMacro(vtkLacunaSlicesRepresentation);
 vtkLacunaSlicesRepresentation::vtkLacunaSlicesRepresentation()
 {
   this->Planes->SetMaximumNumberOfPoints(MostPoints);
-  this->Bright->SetInputConnection(this->Planes->GetOutputPort());
+  this->Ids->SetInputConnection(this->Planes->GetOutputPort());
+  vtkLacunaSelectionIds::Use(this->GeometryFilter);
+  this->Bright->SetInputConnection(this->Ids->GetOutputPort());
   this->Bright->SetInputArrayToProcess(
     0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "Intensity");
   this->Bright->SetThresholdFunction(vtkThreshold::THRESHOLD_UPPER);
@@ -59,7 +62,9 @@ int vtkLacunaSlicesRepresentation::ProcessViewRequest(
 //------------------------------------------------------------------------------
 vtkAlgorithmOutput* vtkLacunaSlicesRepresentation::GetInternalOutputPort(int port, int connection)
 {
-  this->Planes->SetInputConnection(this->Superclass::GetInternalOutputPort(port, connection));
+  vtkAlgorithmOutput* stack = this->Superclass::GetInternalOutputPort(port, connection);
+  this->Planes->SetInputConnection(stack);
+  this->Ids->SetInputConnection(1, stack);
   return this->Bright->GetOutputPort();
 }
 

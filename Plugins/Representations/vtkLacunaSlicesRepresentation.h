@@ -17,6 +17,7 @@
 #include "vtkLacunaRepresentationsModule.h" // for export macro
 #include "vtkNew.h"                         // for the filter
 
+class vtkLacunaSelectionIds;
 class vtkLacunaSlicePlanes;
 class vtkThreshold;
 
@@ -53,6 +54,7 @@ private:
   void operator=(const vtkLacunaSlicesRepresentation&) = delete;
 
   vtkNew<vtkLacunaSlicePlanes> Planes;
+  vtkNew<vtkLacunaSelectionIds> Ids;
   vtkNew<vtkThreshold> Bright;
 };
 #endif

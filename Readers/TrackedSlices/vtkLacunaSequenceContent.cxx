@@ -16,18 +16,75 @@
 #include "vtkLacunaScalarType.h"
 #include "vtkLacunaSequenceNames.h"
 #include "vtkLacunaSliceStream.h"
-#include "vtkLacunaStreamedPixels.h"
 #include "vtkLacunaTrackedSlices.h"
 #include "vtkPointData.h"
 #include "vtkStringArray.h"
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <memory>
 #include <set>
 #include <stdexcept>
+#include <vector>
 
 namespace
 {
+// The slices of a stream one by one, as the writer takes them: reads some at a time and keeps them
+// until others are asked for. Copies share them.
+class StreamedPixels
+{
+public:
+  // Both must outlive this object.
+  StreamedPixels(vtkLacunaSliceStream* stream, lacuna::Execution& execution);
+
+  // Pixels of a slice, counted from 0; valid until the next call.
+  const void* operator()(std::int64_t slice) const;
+
+private:
+  struct Part
+  {
+    std::vector<unsigned char> Pixels;
+    std::int64_t First = 0;
+    std::int64_t Count = 0;
+  };
+  vtkLacunaSliceStream* Stream;
+  lacuna::Execution* Execution;
+  std::shared_ptr<Part> Loaded;
+};
+
+//------------------------------------------------------------------------------
+StreamedPixels::StreamedPixels(vtkLacunaSliceStream* stream, lacuna::Execution& execution)
+  : Stream(stream)
+  , Execution(&execution)
+  , Loaded(std::make_shared<Part>())
+{
+}
+
+//------------------------------------------------------------------------------
+const void* StreamedPixels::operator()(std::int64_t slice) const
+{
+  Part& part = *this->Loaded;
+  const auto sliceSize = static_cast<std::size_t>(this->Stream->GetSliceSize());
+  if (slice < part.First || slice >= part.First + part.Count)
+  {
+    const int* extent = this->Stream->GetExtent();
+    const std::int64_t all = extent[5] - extent[4] + 1;
+    part.First = slice;
+    part.Count = std::min<std::int64_t>(this->Stream->GetSlicesAtATime(), all - slice);
+    part.Pixels.resize(static_cast<std::size_t>(part.Count) * sliceSize);
+    // reading does not move the progress of writing
+    const double progress = static_cast<double>(slice) / static_cast<double>(all);
+    this->Execution->SetStage(progress, progress);
+    const int first = extent[4] + static_cast<int>(slice);
+    this->Stream->Read(
+      first, first + static_cast<int>(part.Count) - 1, part.Pixels.data(), *this->Execution);
+    this->Execution->SetStage(0, 1);
+  }
+  return part.Pixels.data() + static_cast<std::size_t>(slice - part.First) * sliceSize;
+}
+
+//------------------------------------------------------------------------------
 constexpr const char* TransformSuffix = "Transform";
 constexpr const char* StatusSuffix = "TransformStatus";
 constexpr const char* ImageStatus = "ImageStatus";
@@ -100,7 +157,7 @@ vtkLacunaSequenceContent::vtkLacunaSequenceContent(vtkImageData* stack,
   const std::string preview = GetString(stack, vtkLacunaTrackedSlices::PreviewName, 0);
   if (stream)
   {
-    this->Content.GetPixels = vtkLacunaStreamedPixels(stream, execution);
+    this->Content.GetPixels = StreamedPixels(stream, execution);
   }
   else if (!preview.empty())
   {

@@ -5,7 +5,7 @@
 #define vtkLacunaSequenceContent_h
 
 #include "lacunaMatrix4.h"
-#include "lacunaSequenceFieldList.h"
+#include "lacunaSequenceWriter.h"
 #include "vtkType.h"
 
 #include <string>

@@ -5,7 +5,7 @@
  *
  * The tracker (through libserialport, or another one through OpenIGTLink) and the video (through
  * FFmpeg or OpenIGTLink) are driven by threads of their own, which come back by themselves when a
- * device was unplugged; see lacunaSweepAcquisition.h for the clock model, lacunaCaptureRule.h for
+ * device was unplugged; see lacunaSweepAcquisition.h for the clock model, lacunaSweepTaking.h for
  * what is taken (Carr 1996, ch. 2). Nothing in this class waits for a device.
  *
  * Connect opens the devices, Start takes slices, Stop ends that; Start goes on with the sweep, Clear

@@ -9,10 +9,10 @@
 /// slightly larger and the left forehead carries a bony bump of 2.5 mm, so that a mirrored picture
 /// shows.
 ///
-/// The surface is described in lacunaSkullSurface.h, tissues, blur and defect in lacunaSkull.h, and
-/// for users in Documentation/UserGuide/skull-phantom.md. 500 HU lies exactly on the outer bone
-/// surface (IntersectOuterSurface) for voxel edges up to 2.6 mm. The noise is a function of Seed
-/// and voxel: the output depends neither on the number of threads nor on the requested piece.
+/// The surface, tissues, blur and defect are described in lacunaSkull.h, and for users in
+/// Documentation/UserGuide/skull-phantom.md. 500 HU lies exactly on the outer bone surface
+/// (IntersectOuterSurface) for voxel edges up to 2.6 mm. The noise is a function of Seed and voxel:
+/// the output depends neither on the number of threads nor on the requested piece.
 ///
 /// Bad property values are errors that say what would be right; the output is then empty.
 #ifndef vtkLacunaSkullPhantom_h

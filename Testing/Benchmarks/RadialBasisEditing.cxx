@@ -4,7 +4,6 @@
 #include "lacunaExecution.h"
 #include "lacunaHoleFill.h"
 #include "lacunaScatteredProblem.h"
-#include "lacunaUpdatableRadialBasis.h"
 
 #include <cmath>
 #include <cstddef>
@@ -64,37 +63,6 @@ void DragPoint(benchmark::State& state)
   state.counters["first_s"] = first;
 }
 
-// A node of UpdatableRadialBasis moves, and the function is evaluated at one point. Counter: how many
-// times as long a new fit takes. arguments: nodes
-void MoveNode(benchmark::State& state)
-{
-  const Problem problem(state.range(0));
-  lacuna::ThreadExecution execution(1);
-  lacuna::UpdatableRadialBasis<2> s(execution, problem.Nodes, problem.Values, MakeOptions(0));
-  std::vector<double> values;
-  Point p = problem.Nodes[static_cast<std::size_t>(state.range(0) / 2)];
-  const Memory memory;
-  const double start = GetProcessSeconds();
-  for (auto _ : state)
-  {
-    p[0] += 1e-6;
-    s.Move(static_cast<std::size_t>(state.range(0) / 2), p, 0.5);
-    s.Evaluate(execution, { { 0.3, 0.4 } }, values);
-    benchmark::DoNotOptimize(values.data());
-  }
-  memory.Report(state);
-  const double seconds = (GetProcessSeconds() - start) / static_cast<double>(state.iterations());
-  const double fit = GetLeastSeconds(
-    [&]
-    {
-      const lacuna::RadialBasis<2> fresh(
-        execution, problem.Nodes, problem.Values, MakeOptions(ThinPlate));
-      double residual = fresh.GetReport().Residual;
-      benchmark::DoNotOptimize(residual);
-    });
-  state.counters["new_fit/move"] = fit / seconds;
-}
-
 // What it takes to set up a warp by landmarks in space. arguments: pairs
 void WarpSetUp(benchmark::State& state)
 {
@@ -115,5 +83,4 @@ void WarpSetUp(benchmark::State& state)
 }
 
 BENCHMARK(DragPoint)->ArgNames({ "margin" })->Args({ 12 })->Args({ 45 })->Apply(Measure);
-BENCHMARK(MoveNode)->ArgNames({ "nodes" })->Args({ 700 })->Args({ 2000 })->Apply(Measure);
 BENCHMARK(WarpSetUp)->ArgNames({ "pairs" })->Args({ 700 })->Apply(Measure);

@@ -13,7 +13,6 @@
 /// Counters: slices/s, the time for each pixel of the map that a slice covers, both by the time
 /// that the process was busy, and the share of the map that a slice covers.
 #include "lacunaSliceFingerprint.h"
-#include "lacunaSliceProjection.h"
 #include "lacunaSliceRayCaster.h"
 
 #include <benchmark/benchmark.h>

@@ -260,8 +260,13 @@ try:
     source.SpeedLimit = 0
     source.RecordFileName = os.path.join(folder, "strips.mhd")
     live.start(source)
-    wait(source, lambda: live.get(source, "SliceCount") >= 90, "strips")
+    volume = SweptVolume(Input=source, BadPoses="LeaveOut", OutputSpacing=[2, 2, 2])
+    for enough in (90, 180, 360):  # a busy machine may miss where the probe is put down
+        wait(source, lambda enough=enough: live.get(source, "SliceCount") >= enough, f"strips of {enough} slices")
+        if len(slices_of(volume)[1]["Sweeps"]) > 1:
+            break
     live.stop(source)
+    Delete(volume)
     count = live.get(source, "SliceCount")
     wait(source, lambda: live.get(source, "RecordedSlices") == count, "the strips on the disk")
     reader = TrackedSliceReader(FileName=live.get(source, "RecordedFileName"), CalibrationFileName=calibration)

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What panels of the ParaView application say and do: units, what 0 means, empty fields, sliders, places of regions, and the guide."""
+"""What panels of the ParaView application say and do: units, what 0 means, empty fields, sliders, places and
+marks of regions, and the guide."""
 import lacuna_window
 
 ADVANCED = "propertiesPanel/AdvancedButton"
@@ -12,10 +13,18 @@ def drag(window, name, steps):
     window.drag([(handle, height / 2), (handle + steps, height / 2)], name)
 
 
+def points_of(source):
+    """Of a source of this process: N x 3."""
+    from vtkmodules.util.numpy_support import vtk_to_numpy
+    return vtk_to_numpy(source.GetClientSideObject().GetOutputDataObject(0).GetPoints().GetData())
+
+
 def test(window):
     import numpy as np
+    import lacuna.window
+    from lacuna.data import fetch
     from paraview import servermanager
-    from paraview.simple import GetActiveSource, GetActiveView, SetActiveSource
+    from paraview.simple import GetActiveSource, GetActiveView, GetDisplayProperties, SetActiveSource
     window.resize(1500, 1000)
     window.menu("Lacuna/Sample CT: Skull with a Hole")
     phantom = GetActiveSource()
@@ -66,7 +75,39 @@ def test(window):
     rim = np.array(found["LacunaSplineLoop"].Points).reshape(-1, 3)
     assert len(rim) == 8 and not any(truth.IsInDefect(*point) for point in rim), "the loop is around the hole"
     assert all(20 < np.linalg.norm(point - middle) < 50 for point in rim)
+
+    # What will be replaced is seen before Apply: the hole, and what a sphere covers
+    caster_view = np.array(fetch(caster).GetFieldData().GetArray("ImageToWorld").GetTuple(0)).reshape(4, 4)[:3, 2]
+    hidden = view.SMProxy.GetProperty("HiddenRepresentations")
+    window.wait_for("the marks", lambda: lacuna.window._marks)
+    marks = points_of(lacuna.window._marks[0][1])
+    assert np.linalg.norm(marks - middle, axis=1).min() < 5, "they cover the middle of the hole"
+    assert hidden.GetNumberOfProxies() == len(lacuna.window._marks) == 1
+    window.choose(lacuna_window.PANEL + "DefectRegion/comboBox", "Sphere")
+    window.wait_for("other marks", lambda: len(points_of(lacuna.window._marks[0][1])) != len(marks))
+    marks = points_of(lacuna.window._marks[0][1])
+    aside = np.linalg.norm(np.cross(marks - np.array(found["Sphere"].Center), caster_view), axis=1)
+    assert aside.max() < found["Sphere"].Radius + 0.1, "as the viewer sees the sphere"
+    assert filler.DefectRegion.SMProxy.GetXMLName() == "None", "nothing is applied yet"
+
+    # P puts the sphere's middle on the bone under the mouse, in the patient's millimetres
+    direction = np.array([-0.3, -0.5, 0.8]) / np.linalg.norm([-0.3, -0.5, 0.8])
+    bone = direction * truth.IntersectOuterSurface([0, 0, 0], direction)
+    renderer = view.GetRenderer()
+    renderer.SetWorldPoint(*bone, 1)
+    renderer.WorldToDisplay()
+    column, row = renderer.GetDisplayPoint()[:2]
+    width, height = view.GetRenderWindow().GetSize()
+    wide, high = (float(window.get(lacuna_window.VIEW, attribute)) for attribute in ("width", "height"))
+    window.point(column * wide / width, high - row * high / height)
+    window.key(ord("P"))
+    center = [float(window.get(f"{lacuna_window.PANEL}DefectRegion/center{axis}")) for axis in "XYZ"]
+    assert np.linalg.norm(np.array(center) - bone) < 4, (center, bone)
+
+    window.choose(lacuna_window.PANEL + "DefectRegion/comboBox", "Automatic (all enclosed holes)")
     window.press(lacuna_window.ACCEPT)
+    assert not lacuna.window._marks
+    assert GetDisplayProperties(filler, view).Representation == "Relief in Space"
     drag(window, "LacunaSlider_SupportMargin", 10)
     assert filler.SupportMargin > 12
     SetActiveSource(phantom)

@@ -182,6 +182,11 @@ class Window:
         library.lacuna_mouse(name, *places[-1], 2)
         self.wait(100)
 
+    def point(self, x, y, name=VIEW):
+        """Moves the mouse there; pixels from the widget's upper left corner."""
+        assert self.library.lacuna_mouse(name.encode(), round(x), round(y), 3), name
+        self.wait(50)
+
     def open_file(self, path, reader=None):
         """File > Open, by this reader in the list of readers, which comes up when there are several."""
         def choose_reader():

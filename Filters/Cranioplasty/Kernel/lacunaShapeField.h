@@ -77,7 +77,6 @@ public:
   const SquareMatrix& GetFactors() const { return *this->Factors; }
 
   const ShapeVariances& GetVariances() const { return this->Variances; }
-  double GetCalibration() const { return this->Calibration; }
   /// Of the example; 0 without one.
   double GetExampleFactor() const { return this->Example ? this->MeanFactors.back() : 0; }
 

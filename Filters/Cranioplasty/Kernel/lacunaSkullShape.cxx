@@ -330,16 +330,6 @@ SkullShape::SkullShape(const SoundBone& bone, const std::vector<Vec3>& defect,
 
 SkullShape::~SkullShape() = default;
 
-const ShapeVariances& SkullShape::GetOuterVariances() const
-{
-  return this->Outer->GetVariances();
-}
-
-const ShapeVariances& SkullShape::GetThicknessVariances() const
-{
-  return this->Thickness->GetVariances();
-}
-
 double SkullShape::GetOuterFactor() const
 {
   return this->Outer->GetExampleFactor();
@@ -348,16 +338,6 @@ double SkullShape::GetOuterFactor() const
 double SkullShape::GetThicknessFactor() const
 {
   return this->Thickness->GetExampleFactor();
-}
-
-double SkullShape::GetOuterCalibration() const
-{
-  return this->Outer->GetCalibration();
-}
-
-double SkullShape::GetThicknessCalibration() const
-{
-  return this->Thickness->GetCalibration();
 }
 
 //------------------------------------------------------------------------------

@@ -78,12 +78,6 @@ public:
   /// The refined plane of symmetry.
   const MirrorPlane& GetPlane() const { return this->Plane; }
   std::size_t GetNumberOfNodes() const { return this->Nodes.size(); }
-  /// mm^2
-  const ShapeVariances& GetOuterVariances() const;
-  const ShapeVariances& GetThicknessVariances() const;
-  /// Factors of the standard errors from virtual holes.
-  double GetOuterCalibration() const;
-  double GetThicknessCalibration() const;
 
   /// How far the shape of the template counts: 0 not at all, about 1 wholly.
   double GetOuterFactor() const;

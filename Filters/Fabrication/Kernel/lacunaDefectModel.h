@@ -4,9 +4,10 @@
 #ifndef lacunaDefectModel_h
 #define lacunaDefectModel_h
 
-#include "lacunaDefectModelPlan.h"
 #include "lacunaMatrix4.h"
+#include "lacunaPlanarCurves.h"
 #include "lacunaPlanarTriangulation.h"
+#include "lacunaSurfaceFit.h"
 
 #include <string>
 #include <vector>
@@ -15,6 +16,60 @@ namespace lacuna
 {
 class Execution;
 class ReliefSurface;
+
+/// The floor of the defect.
+enum class DefectFloor
+{
+  Flat,    ///< one plane, everywhere at least DefectDepth below the fit
+  Parallel ///< the true normal offset of the fit by DefectDepth
+};
+
+struct DefectModelOptions
+{
+  double Margin = 15; ///< mm of bone around the defect as seen along z, >= 0
+  DefectFloor Floor = DefectFloor::Flat;
+  double DefectDepth = 10;  ///< mm, > 0
+  double BaseThickness = 5; ///< mm below the floor, > 0
+  double MaximumHeight = 0; ///< mm from the highest point to the base; 0: as the bone needs
+};
+
+/// mm, of DefectDepth and of BaseThickness; the other two are limited by the map and by the bone.
+constexpr double LargestBlock = 1000;
+
+/// Throws std::invalid_argument that names the option, its value and what would be right.
+void CheckDefectModelOptions(const DefectModelOptions& options);
+
+// Where the model of a defect lies in its depth map.
+
+/// A depth map and the part of it on which there is a fit. Coordinates: x and y in mm from the first
+/// pixel of the part, z the depth away from the viewer.
+struct DefectScene
+{
+  GridSize MapSize;
+  std::vector<double> MapDepths; ///< measured, NaN where there is no bone
+  std::int64_t Column = 0;       ///< of the part's first pixel in the map
+  std::int64_t Row = 0;
+  GridSize Size; ///< of the part
+  Vec2 Spacing{};
+  std::vector<double> Fitted;      ///< of the part
+  std::vector<unsigned char> Mask; ///< of the part, 1 in the defect
+};
+
+/// The rectangle of a model, and the defects in it.
+struct DefectModelPlan
+{
+  std::vector<Loop> Contours; ///< of all defects and islands, as FindDefectContours
+  std::int64_t Defects = 0;
+  std::int64_t Column = 0; ///< of the rectangle's first pixel in the map
+  std::int64_t Row = 0;
+  GridSize Size;
+  bool Cut = false; ///< by the border of the map
+};
+
+/// The rectangle of whole pixels around all defects and Margin (at least two pixels), as far as the
+/// map goes. Throws std::invalid_argument when an option is out of range, std::runtime_error when a
+/// defect reaches the border of the fit, all are too small, or the rectangle is too large.
+DefectModelPlan PlanDefectModel(const DefectScene& scene, const DefectModelOptions& options);
 
 /// What a triangle of the model belongs to.
 enum class ModelFace : unsigned char

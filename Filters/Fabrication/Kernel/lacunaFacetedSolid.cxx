@@ -18,6 +18,8 @@ namespace
 {
 constexpr double VolumeTolerance = 5e-4;
 constexpr std::array<double, 4> Attempts = { 0.85, 0.6, 0.3, 0.1 }; // parts of the tolerance
+constexpr int Rounds = 3; // of each, in which more and more of the surface is left as it is
+constexpr double FixedReach = 0.5;      // mm around what passes through itself
 constexpr double SameDirection = 0.999; // least cosine between normals of triangles in one plane
 constexpr double SampleSpacing = 0.25;  // mm
 
@@ -37,25 +39,65 @@ double FindLargestDistance(
   return *std::max_element(distances.begin(), distances.end());
 }
 
-// A point where the surface passes through itself.
-std::optional<Vec3> FindCrossing(
+// Triangles that pass through others, and these.
+std::vector<std::int32_t> FindCrossings(
   const ClosedMesh& mesh, const TriangleTree& tree, Execution& execution)
 {
-  std::vector<char> crosses(mesh.Triangles.size(), 0);
+  std::vector<std::int32_t> others(mesh.Triangles.size());
   execution.For(static_cast<std::int64_t>(mesh.Triangles.size()), 256,
     [&](std::int64_t begin, std::int64_t end)
     {
       for (std::int64_t t = begin; t < end; ++t)
       {
-        crosses[t] = tree.FindCrossing(static_cast<std::int32_t>(t)) >= 0;
+        others[t] = tree.FindCrossing(static_cast<std::int32_t>(t));
       }
     });
-  const auto found = std::find(crosses.begin(), crosses.end(), 1);
-  if (found == crosses.end())
+  std::vector<std::int32_t> found;
+  for (std::size_t t = 0; t < others.size(); ++t)
   {
-    return {};
+    if (others[t] >= 0)
+    {
+      found.push_back(static_cast<std::int32_t>(t));
+      found.push_back(others[t]);
+    }
   }
-  return mesh.Points[mesh.Triangles[found - crosses.begin()][0]];
+  return found;
+}
+
+// Marks points of mesh in the boxes of these triangles of another one, and up to reach (mm) around. Whether there are new ones.
+bool FixAround(const ClosedMesh& other, const std::vector<std::int32_t>& triangles, double reach,
+  const ClosedMesh& mesh, std::vector<char>& fixed, Execution& execution)
+{
+  std::vector<std::array<Vec3, 2>> boxes;
+  for (const std::int32_t t : triangles)
+  {
+    const ClosedMesh::Triangle& ids = other.Triangles[t];
+    std::array<Vec3, 2> box;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const auto [low, high] = std::minmax(
+        { other.Points[ids[0]][axis], other.Points[ids[1]][axis], other.Points[ids[2]][axis] });
+      box[0][axis] = low - reach;
+      box[1][axis] = high + reach;
+    }
+    boxes.push_back(box);
+  }
+  const auto before = std::count(fixed.begin(), fixed.end(), 1);
+  execution.For(static_cast<std::int64_t>(fixed.size()), 256,
+    [&](std::int64_t begin, std::int64_t end)
+    {
+      for (std::int64_t i = begin; i < end; ++i)
+      {
+        const Vec3& p = mesh.Points[i];
+        const auto holds = [&p](const std::array<Vec3, 2>& box)
+        {
+          return p[0] >= box[0][0] && p[0] <= box[1][0] && p[1] >= box[0][1] && p[1] <= box[1][1] &&
+            p[2] >= box[0][2] && p[2] <= box[1][2];
+        };
+        fixed[i] = fixed[i] || std::any_of(boxes.begin(), boxes.end(), holds) ? 1 : 0;
+      }
+    });
+  return std::count(fixed.begin(), fixed.end(), 1) > before;
 }
 
 //------------------------------------------------------------------------------
@@ -246,6 +288,16 @@ private:
   std::vector<std::int32_t> Groups;
 };
 
+// A point where the surface passes through itself.
+std::optional<Vec3> GetPlace(const ClosedMesh& mesh, const std::vector<std::int32_t>& crossings)
+{
+  if (crossings.empty())
+  {
+    return {};
+  }
+  return mesh.Points[mesh.Triangles[crossings.front()][0]];
+}
+
 //------------------------------------------------------------------------------
 struct Simplified
 {
@@ -260,41 +312,53 @@ Simplified Simplify(const ClosedMesh& mesh, double tolerance, Execution& executi
   const TriangleTree tree(mesh);
   const double volume = mesh.GetVolume();
   const std::vector<Vec3> samples = SampleMesh(mesh, SampleSpacing);
-  std::optional<std::optional<Vec3>> crossing; // of mesh, when it is known
+  std::optional<std::vector<std::int32_t>> crossings; // of mesh, when they are known
   for (std::size_t attempt = 0; attempt < Attempts.size() && tolerance > 0; ++attempt)
   {
-    const auto at = [&](double fraction)
-    { return (static_cast<double>(attempt) + fraction) / Attempts.size(); };
-    execution.SetStage(at(0), at(0.5));
-    Simplified result{ SimplifyMesh(mesh, Attempts[attempt] * tolerance, execution), 0, {} };
-    if (!(std::abs(result.Mesh.GetVolume() - volume) <= VolumeTolerance * volume))
+    std::vector<char> fixed(mesh.Points.size(), 0);
+    for (int round = 0; round < Rounds; ++round)
     {
-      continue;
-    }
-    const TriangleTree simple(result.Mesh);
-    execution.SetStage(at(0.5), at(0.7));
-    result.Deviation = FindLargestDistance(samples, simple, execution);
-    execution.SetStage(at(0.7), at(0.8));
-    result.Deviation = std::max(result.Deviation,
-      FindLargestDistance(SampleMesh(result.Mesh, SampleSpacing), tree, execution));
-    if (!(result.Deviation <= tolerance))
-    {
-      continue;
-    }
-    execution.SetStage(at(0.8), at(0.9));
-    result.Crossing = FindCrossing(result.Mesh, simple, execution);
-    if (result.Crossing && !crossing)
-    {
-      execution.SetStage(at(0.9), at(1));
-      crossing = FindCrossing(mesh, tree, execution);
-    }
-    if (!result.Crossing || *crossing)
-    {
-      return result;
+      const double begin = static_cast<double>(attempt) + static_cast<double>(round) / Rounds;
+      const auto at = [&](double fraction)
+      { return (begin + fraction / Rounds) / Attempts.size(); };
+      execution.SetStage(at(0), at(0.5));
+      Simplified result{ SimplifyMesh(mesh, Attempts[attempt] * tolerance, execution, fixed), 0,
+        {} };
+      if (!(std::abs(result.Mesh.GetVolume() - volume) <= VolumeTolerance * volume))
+      {
+        break;
+      }
+      const TriangleTree simple(result.Mesh);
+      execution.SetStage(at(0.5), at(0.7));
+      result.Deviation = FindLargestDistance(samples, simple, execution);
+      execution.SetStage(at(0.7), at(0.8));
+      result.Deviation = std::max(result.Deviation,
+        FindLargestDistance(SampleMesh(result.Mesh, SampleSpacing), tree, execution));
+      if (!(result.Deviation <= tolerance))
+      {
+        break;
+      }
+      execution.SetStage(at(0.8), at(0.9));
+      const std::vector<std::int32_t> found = FindCrossings(result.Mesh, simple, execution);
+      if (!found.empty() && !crossings)
+      {
+        execution.SetStage(at(0.9), at(1));
+        crossings = FindCrossings(mesh, tree, execution);
+      }
+      if (found.empty() || !crossings->empty())
+      {
+        result.Crossing = GetPlace(result.Mesh, found);
+        return result;
+      }
+      if (round + 1 == Rounds ||
+        !FixAround(result.Mesh, found, FixedReach * (round + 1), mesh, fixed, execution))
+      {
+        break;
+      }
     }
   }
   execution.SetStage(0.9, 1);
-  return { mesh, 0, FindCrossing(mesh, tree, execution) };
+  return { mesh, 0, GetPlace(mesh, crossings ? *crossings : FindCrossings(mesh, tree, execution)) };
 }
 }
 

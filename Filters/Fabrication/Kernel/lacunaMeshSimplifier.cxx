@@ -106,7 +106,7 @@ struct Step
 class Simplifier
 {
 public:
-  Simplifier(const ClosedMesh& mesh, double tolerance)
+  Simplifier(const ClosedMesh& mesh, double tolerance, const std::vector<char>& fixed)
     : Mesh(mesh)
     , Tree(mesh)
     , Tolerance(tolerance)
@@ -117,6 +117,7 @@ public:
     , Samples(mesh.Triangles.size())
     , Alive(mesh.Triangles.size(), 1)
     , Placed(mesh.Points.size(), 0)
+    , Fixed(fixed)
   {
     for (const Vec3& p : mesh.Points) // near zero quadrics lose no digits
     {
@@ -290,12 +291,22 @@ private:
     neighbors.erase(std::unique(neighbors.begin(), neighbors.end()), neighbors.end());
   }
 
+  bool IsFixed(std::int32_t p) const { return !this->Fixed.empty() && this->Fixed[p]; }
+
   // Puts the edges of p into the queue.
   void Think(std::int32_t p)
   {
+    if (this->IsFixed(p))
+    {
+      return;
+    }
     this->FindNeighbors(p, this->One);
     for (const std::int32_t other : this->One)
     {
+      if (this->IsFixed(other))
+      {
+        continue;
+      }
       const Plan plan = this->MakePlan(p, other);
       const Vec3 way = this->Mesh.Points[other] - this->Mesh.Points[p];
       // the length decides between steps in a plane
@@ -548,6 +559,7 @@ private:
     Samples; // of the mesh as it was, of each triangle those nearest to it
   std::vector<char> Alive;
   std::vector<char> Placed; // points that are not where one of the mesh was
+  const std::vector<char>& Fixed;
   std::priority_queue<Step> Queue;
   std::int64_t Done = 0;
   // of the step that is tried, kept for the next
@@ -563,9 +575,10 @@ private:
 }
 
 //------------------------------------------------------------------------------
-ClosedMesh SimplifyMesh(const ClosedMesh& mesh, double tolerance, Execution& execution)
+ClosedMesh SimplifyMesh(
+  const ClosedMesh& mesh, double tolerance, Execution& execution, const std::vector<char>& fixed)
 {
-  Simplifier simplifier(mesh, tolerance);
+  Simplifier simplifier(mesh, tolerance, fixed);
   simplifier.Run(execution);
   simplifier.CorrectVolume(mesh.GetVolume());
   return simplifier.Get();

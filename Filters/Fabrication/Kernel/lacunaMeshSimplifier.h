@@ -16,7 +16,9 @@ namespace lacuna
 /// corrected by moving new points by at most 0.3 tolerance. The topology stays. mesh is closed, and each of its points has
 /// one fan of triangles (SeparateFans). Nobody looks here whether the result passes through itself, nor how
 /// far it is from mesh between the samples.
-ClosedMesh SimplifyMesh(const ClosedMesh& mesh, double tolerance, Execution& execution);
+/// fixed, one for each point or empty: points that stay, and the edges between them and others do not collapse.
+ClosedMesh SimplifyMesh(const ClosedMesh& mesh, double tolerance, Execution& execution,
+  const std::vector<char>& fixed = {});
 
 /// Corners, and samples between them, of all triangles: at most spacing (mm) apart, but at most 32 along an edge.
 std::vector<Vec3> SampleMesh(const ClosedMesh& mesh, double spacing);

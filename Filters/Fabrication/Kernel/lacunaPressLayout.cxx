@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lacunaPressLayout.h"
 
+#include "lacunaDepthPlane.h"
 #include "lacunaExecution.h"
 #include "lacunaFlangeBlend.h"
 #include "lacunaMemory.h"
@@ -15,6 +16,103 @@
 
 namespace lacuna
 {
+//------------------------------------------------------------------------------
+LevelledRelief::LevelledRelief(
+  const ReliefSurface& relief, const Vec2& slopes, const Vec2& low, const Vec2& high)
+  : Relief(relief)
+  , Slopes(slopes)
+  , Low(low)
+  , High(high)
+{
+}
+
+//------------------------------------------------------------------------------
+LevelledRelief::Argument LevelledRelief::GetArgument(int axis, double x) const
+{
+  if (x >= this->Low[axis] && x <= this->High[axis])
+  {
+    return { x, 1, 0 };
+  }
+  // The slope falls from 1 to 0 as a cubic with level ends, over twice the way there is.
+  const bool above = x > this->High[axis];
+  const double sign = above ? 1 : -1;
+  const double from = above ? this->High[axis] : this->Low[axis];
+  const double room = above ? this->Relief.GetExtent()[axis] - from : from;
+  const double t = room > 0 ? std::min(1.0, sign * (x - from) / (2 * room)) : 1;
+  return { from + sign * (t < 1 ? 2 * room * (t - t * t * t + 0.5 * t * t * t * t) : room),
+    1 - t * t * (3 - 2 * t), t < 1 ? -sign * 6 * t * (1 - t) / (2 * room) : 0 };
+}
+
+//------------------------------------------------------------------------------
+ReliefSurface::Frame LevelledRelief::GetFrame(const Vec2& p) const
+{
+  const Argument x = this->GetArgument(0, p[0]);
+  const Argument y = this->GetArgument(1, p[1]);
+  const auto f = this->Relief.GetDerivatives({ x.Value, y.Value });
+  ReliefSurface::Derivatives g;
+  g.F = f.F + this->Slopes[0] * (p[0] - x.Value) + this->Slopes[1] * (p[1] - y.Value);
+  g.X = f.X * x.First + this->Slopes[0] * (1 - x.First);
+  g.Y = f.Y * y.First + this->Slopes[1] * (1 - y.First);
+  g.XX = f.XX * x.First * x.First + (f.X - this->Slopes[0]) * x.Second;
+  g.XY = f.XY * x.First * y.First;
+  g.YY = f.YY * y.First * y.First + (f.Y - this->Slopes[1]) * y.Second;
+  return ReliefSurface::MakeFrame(p, g);
+}
+
+//------------------------------------------------------------------------------
+//------------------------------------------------------------------------------
+PressFrame MakePressFrame(const Vec3& normal, PressSide side)
+{
+  if (!IsFinite(normal) || !(std::abs(normal[2]) > 1e-6 * Norm(normal)))
+  {
+    throw std::invalid_argument("the plane of the fit stands on edge in the depth map (its normal "
+                                "is not a number or perpendicular to the view)");
+  }
+  const double c1 = -normal[0] / normal[2];
+  const double c2 = -normal[1] / normal[2];
+  PressFrame frame;
+  frame.Theta = std::atan(-c2 / std::sqrt(1 + c1 * c1));
+  frame.Psi = std::atan(c1);
+  frame.Rotation =
+    Matrix4::Rotation({ 1, 0, 0 }, frame.Theta) * Matrix4::Rotation({ 0, 1, 0 }, frame.Psi);
+  frame.Inwards = Normalized({ -c1, -c2, 1 });
+  if (side == PressSide::TowardsViewer)
+  {
+    frame.Rotation =
+      Matrix4::FromColumns({ 1, 0, 0 }, { 0, -1, 0 }, { 0, 0, -1 }, { 0, 0, 0 }) * frame.Rotation;
+  }
+  return frame;
+}
+
+//------------------------------------------------------------------------------
+Vec3 FitPlaneNormal(GridSize size, const std::vector<double>& depths, const Vec2& spacing,
+  const std::vector<unsigned char>& mask)
+{
+  const auto forEach = [&](auto&& body)
+  {
+    for (std::int64_t j = 0; j < size.Rows; ++j)
+    {
+      for (std::int64_t i = 0; i < size.Columns; ++i)
+      {
+        const std::int64_t k = i + size.Columns * j;
+        if (mask.empty() || mask[k])
+        {
+          body(Vec3{
+            static_cast<double>(i) * spacing[0], static_cast<double>(j) * spacing[1], depths[k] });
+        }
+      }
+    }
+  };
+  const DepthPlane plane = FitDepthPlane(forEach);
+  if (!plane.IsUnique)
+  {
+    throw std::invalid_argument("the pixels of the defect lie on a line; there is no plane through "
+                                "them");
+  }
+  return Normalized({ plane.Coefficients[1], plane.Coefficients[2], -1 });
+}
+
+//------------------------------------------------------------------------------
 namespace
 {
 constexpr double Degrees = 180 / 3.14159265358979323846;

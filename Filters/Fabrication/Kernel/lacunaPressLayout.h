@@ -4,10 +4,10 @@
 #ifndef lacunaPressLayout_h
 #define lacunaPressLayout_h
 
-#include "lacunaLevelledRelief.h"
+#include "lacunaMatrix4.h"
 #include "lacunaPlanarCurves.h"
-#include "lacunaPressFrame.h"
 #include "lacunaReliefSurface.h"
+#include "lacunaSurfaceFit.h"
 
 #include <cstdint>
 #include <string>
@@ -16,6 +16,63 @@
 namespace lacuna
 {
 class Execution;
+
+/// The C2 surface f(s(x), t(y)) + c1 (x - s(x)) + c2 (y - t(y)) over the whole plane. On a core, s and t
+/// are the identity and the surface is the relief; beyond it they come to rest at the relief's border,
+/// and the surface gets the slopes c1, c2.
+class LevelledRelief
+{
+public:
+  /// low and high are the corners of the core, within the relief; it must outlive this object.
+  LevelledRelief(
+    const ReliefSurface& relief, const Vec2& slopes, const Vec2& low, const Vec2& high);
+
+  ReliefSurface::Frame GetFrame(const Vec2& p) const;
+
+private:
+  struct Argument
+  {
+    double Value;
+    double First; ///< derivatives
+    double Second;
+  };
+  Argument GetArgument(int axis, double x) const;
+
+  const ReliefSurface& Relief;
+  Vec2 Slopes;
+  Vec2 Low;
+  Vec2 High;
+};
+
+/// Which way the mill's side of the press (+z) points.
+enum class PressSide
+{
+  IntoBody, ///< away from the viewer of the relief: its outer face lies on the mould
+  TowardsViewer
+};
+
+/// A rotation from a relief's axes (x, y, and z away from the viewer) to those of the press.
+struct PressFrame
+{
+  /// Radians about the relief's x and y axes (Carr 1996, eq. 6.14): first Psi about y, then Theta
+  /// about x make the plane horizontal.
+  double Theta = 0;
+  double Psi = 0;
+  /// Rx(Theta) Ry(Psi); for TowardsViewer followed by half a turn about x. Determinant +1.
+  Matrix4 Rotation;
+  /// The plane's unit normal away from the viewer, in the relief's axes.
+  Vec3 Inwards{};
+};
+
+/// The frame for a plane with the given normal, of any length and either sign. Throws
+/// std::invalid_argument when it is not finite or perpendicular to the viewer's axis.
+PressFrame MakePressFrame(const Vec3& normal, PressSide side);
+
+/// The normal (c1, c2, -1)/length, towards the viewer, of the plane c0 + c1 x + c2 y that is nearest
+/// to the depths where mask is not 0 (everywhere if mask is empty), in the sense of least squares.
+/// The depths are finite there. Throws std::invalid_argument when those pixels lie on a line.
+Vec3 FitPlaneNormal(GridSize size, const std::vector<double>& depths, const Vec2& spacing,
+  const std::vector<unsigned char>& mask = {});
 
 /// The tool that a plate is pressed with.
 enum class PressMould

@@ -6,10 +6,11 @@
 
 #include "lacunaProbeCalibration.h"
 
-#include <Eigen/Core>
-
+#include <cstddef>
 #include <optional>
 #include <vector>
+
+#include <Eigen/Core>
 
 namespace lacuna
 {
@@ -82,5 +83,41 @@ private:
   std::vector<Pose> Poses;
   std::vector<int> Unknowns;
 };
+
+/// Picks that may have a part of their error in common, as numbers from 0: those of one slice, and of
+/// slices that follow one another while the probe rests, which is when neither its receiver nor a
+/// corner of the image (up to farPixel) moves by more than rest (mm) from the first of them. Picks
+/// without a slice are on their own.
+std::vector<std::size_t> FindCalibrationClusters(const std::vector<CalibrationPick>& picks,
+  const CalibrationState& state, const Vec2& farPixel, double rest);
+
+struct ClusteredCovariance
+{
+  Eigen::MatrixXd Covariance; ///< of the model's unknowns
+  std::size_t Clusters = 0;   ///< that have picks with a weight
+};
+
+/// Errors may be of any kind within a cluster and are independent from one to the other: the sandwich
+/// estimator with the clusters' residuals as they would be without them (the jackknife: CR3 of
+/// MacKinnon and White 1985), which is not too small with few clusters either. What a single cluster
+/// holds, its residuals cannot tell; there errors of spread (mm, of an equation) that all its
+/// equations share are assumed. root: times its transpose, the inverse of the normal matrix.
+ClusteredCovariance GetClusteredCovariance(const CalibrationModel& model,
+  const CalibrationState& state, const std::vector<double>& weights,
+  const std::vector<std::size_t>& clusters, const Eigen::MatrixXd& root, double spread);
+
+/// How much further than by linear equations the truth may lie from the solution. A probe that was
+/// hardly turned leaves the solution open by so much that the equations bend: near the solution they
+/// then promise more than they hold. Returns the symmetric square root of the second moments about
+/// the solution, in units in which linear equations give the unit matrix, which it is where the
+/// equations are as good as linear.
+///
+/// The moments are those of the posterior with a flat prior and normal errors of a spread that is not
+/// known (a t distribution if the equations were linear), by importance sampling: three rounds, from
+/// t distributions with 6 degrees of freedom that take over mean and covariance. root: symmetric,
+/// the square root of the covariance by linear equations. tempering: how much larger the covariance
+/// is by errors that equations have in common, 1 or more.
+Eigen::MatrixXd GetPosteriorRoot(const CalibrationModel& model, const CalibrationState& state,
+  const std::vector<double>& weights, const Eigen::MatrixXd& root, double tempering);
 }
 #endif

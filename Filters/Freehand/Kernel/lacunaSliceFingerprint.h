@@ -5,16 +5,33 @@
 #define lacunaSliceFingerprint_h
 
 #include "lacunaExecution.h"
-#include "lacunaPixelHash.h"
 #include "lacunaSliceImage.h"
 
 #include <array>
+#include <cstdint>
 #include <vector>
 
 namespace lacuna
 {
+/// 128 bits. Pixels that differ have different hashes, but for a chance of less than 1 in 10^18:
+/// changes of up to 8 bytes always change it. Made for speed (several bytes per clock cycle) and
+/// not against an adversary.
+struct PixelHash
+{
+  std::uint64_t First = 0;
+  std::uint64_t Second = 0;
+
+  bool operator==(const PixelHash& other) const
+  {
+    return this->First == other.First && this->Second == other.Second;
+  }
+};
+
+/// Of the pixels of a slice's window, and of nothing else.
+PixelHash HashPixels(const SliceImage& slice);
+
 /// All that matters of a slice, the grey levels as a hash: equal slices have equal fingerprints,
-/// and different ones as good as never (lacunaPixelHash.h).
+/// and different ones as good as never (PixelHash).
 struct SliceFingerprint
 {
   /// Reads the pixels only when withPixels; Pixels is not set otherwise.

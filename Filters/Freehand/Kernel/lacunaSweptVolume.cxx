@@ -1,21 +1,154 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lacunaSweptVolume.h"
 
-#include "lacunaPixelPlacing.h"
+#include "lacunaSliceImage.h"
 #include "lacunaSlicePair.h"
+#include "lacunaVolumeGrid.h"
+#include "lacunaVoxelBlock.h"
 #include "lacunaVoxelFilling.h"
+#include "lacunaVoxelRegion.h"
+#include "lacunaWide.h"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
+#include <tuple>
 #include <type_traits>
+#include <utility>
 
 namespace lacuna
 {
 namespace
 {
+// Pixels put into the voxels in which their centres lie.
+
+// The nearest whole number of one that is at least -0.5 but for a tolerance.
+LACUNA_INLINE int RoundPositive(double x)
+{
+  return static_cast<int>(x + 0.5);
+}
+
+// A voxel index along a row of pixels.
+struct Line
+{
+  double Start, Step;
+  LACUNA_INLINE double At(double i) const { return this->Start + this->Step * i; }
+};
+
+// Pixels that are placed before they are put: in two loops, the first one with vectors.
+constexpr int PixelsAtATime = 128;
+
+// Where count pixels from first on lie, rounded.
+LACUNA_WIDE void RoundAlong(Line line, int first, int count, std::int32_t* indices)
+{
+  for (int n = 0; n < count; ++n)
+  {
+    indices[n] = RoundPositive(line.At(static_cast<double>(first + n)));
+  }
+}
+
+template <Compounding compounding, class T, class Real>
+void PutPixelsOf(const SliceImage& slice, const T* pixels, const VolumeGrid& grid,
+  IndexInterval layers, VoxelBlock<Voxel<Real>>& voxels)
+{
+  const std::array<int, 6>& extent = voxels.GetExtent();
+  const std::array<IndexInterval, 3> range{ IndexInterval{ extent[0], extent[1] },
+    IndexInterval{ extent[2], extent[3] }, layers };
+  // The voxel index along each axis, a function of the pixel's column and row.
+  std::array<AffineFunction, 3> index;
+  VoxelRegion region; // of pixels
+  constexpr double margin = 1e-6;
+  for (int a = 0; a < 3; ++a)
+  {
+    const double scale = 1 / grid.Spacing[a];
+    index[a] = { scale * slice.PixelToReference(a, 0), scale * slice.PixelToReference(a, 1), 0,
+      scale * (slice.PixelToReference(a, 3) - grid.Origin[a]) };
+    region.Add(index[a] + (0.5 + margin - static_cast<double>(range[a].First)));
+    region.Add(-index[a] + (0.5 + margin + static_cast<double>(range[a].Last)));
+  }
+  const VoxelRegion::Layer layer = region.GetLayer(0, { 0, slice.Height - 1 });
+  const std::int64_t lineSize = voxels.GetSize(0);
+  const std::int64_t layerSize = lineSize * voxels.GetSize(1);
+  Voxel<Real>* const data = voxels.GetData();
+  const std::int64_t start = extent[4] * layerSize + extent[2] * lineSize + extent[0];
+  std::array<std::array<std::int32_t, PixelsAtATime>, 3> v;
+  const IndexInterval rows = layer.GetRows();
+  for (std::int64_t j = rows.First; j <= rows.Last; ++j)
+  {
+    const IndexInterval columns = layer.GetRow(j, { 0, slice.Width - 1 });
+    const FanMask::Runs runs =
+      slice.Fan ? slice.Fan->GetRuns(j) : FanMask::Runs{ &columns, &columns + 1 };
+    const T* const line = pixels + slice.RowStride * j;
+    std::array<Line, 3> along{};
+    for (int a = 0; a < 3; ++a)
+    {
+      along[a] = { index[a].C + index[a].J * static_cast<double>(j), index[a].I };
+    }
+    const auto isInside = [&](std::int64_t i)
+    {
+      bool inside = true;
+      for (int a = 0; a < 3; ++a)
+      {
+        const int v = RoundPositive(along[a].At(static_cast<double>(i)));
+        inside &= v >= range[a].First && v <= range[a].Last;
+      }
+      return inside;
+    };
+    for (const IndexInterval& run : runs)
+    {
+      // indices grow or fall along the row: the margin is at its ends
+      std::int64_t first = std::max(run.First, columns.First);
+      std::int64_t last = std::min(run.Last, columns.Last);
+      while (first <= last && !isInside(first))
+      {
+        ++first;
+      }
+      while (first <= last && !isInside(last))
+      {
+        --last;
+      }
+      while (first <= last)
+      {
+        const int count = static_cast<int>(std::min<std::int64_t>(last - first + 1, PixelsAtATime));
+        for (int a = 0; a < 3; ++a)
+        {
+          RoundAlong(along[a], static_cast<int>(first), count, v[a].data());
+        }
+        const T* const pixel = line + first;
+        for (int n = 0; n < count; ++n)
+        {
+          data[v[2][n] * layerSize + v[1][n] * lineSize + v[0][n] - start]
+            .template Put<compounding>(static_cast<Real>(pixel[n]));
+        }
+        first += count;
+      }
+    }
+  }
+}
+
+// Adds the pixels of slice whose nearest voxels lie in layers; slice has passed CheckSlice.
+template <class Real>
+void PutPixels(const SliceImage& slice, const VolumeGrid& grid, IndexInterval layers,
+  Compounding compounding, VoxelBlock<Voxel<Real>>& voxels)
+{
+  DispatchScalars(slice.Type, slice.Pixels,
+    [&](const auto* pixels)
+    {
+      if (compounding == Compounding::Mean)
+      {
+        PutPixelsOf<Compounding::Mean>(slice, pixels, grid, layers, voxels);
+      }
+      else
+      {
+        PutPixelsOf<Compounding::Maximum>(slice, pixels, grid, layers, voxels);
+      }
+    });
+}
+
+//------------------------------------------------------------------------------
 // Slices whose rasters of footprint means are held at a time: enough to keep the threads busy.
 constexpr std::size_t SlicesAtATime = 16;
 // Layers that a thread takes at a time when it places pixels: each time it looks at all slices.
@@ -354,4 +487,168 @@ LACUNA_INSTANTIATE(float);
 LACUNA_INSTANTIATE(double);
 #undef LACUNA_INSTANTIATE
 // NOLINTEND(bugprone-macro-parentheses)
+
+//------------------------------------------------------------------------------
+namespace
+{
+bool AreEqual(const VolumeGrid& a, const VolumeGrid& b)
+{
+  return a.Origin == b.Origin && a.Spacing == b.Spacing && a.Dimensions == b.Dimensions;
+}
+
+// Names every member: one that is added to the options does not compile before it is compared.
+auto Tie(const SweptVolume::Options& options)
+{
+  const auto& [interpolation, sampling, compound, footprintScale, footprintAcrossSlices, gap,
+    doublePrecision] = options;
+  return std::make_tuple(
+    interpolation, sampling, compound, footprintScale, footprintAcrossSlices, gap, doublePrecision);
+}
+
+std::vector<const SliceImage*> Flatten(const GrowingVolume::Sweeps& sweeps)
+{
+  std::vector<const SliceImage*> slices;
+  for (const std::vector<SliceImage>* sweep : sweeps)
+  {
+    for (const SliceImage& slice : *sweep)
+    {
+      slices.push_back(&slice);
+    }
+  }
+  return slices;
+}
+}
+
+std::vector<GrowingVolume::Record> GrowingVolume::MakeRecords(const Sweeps& sweeps)
+{
+  std::vector<Record> records;
+  for (std::size_t s = 0; s < sweeps.size(); ++s)
+  {
+    for (const SliceImage& slice : *sweeps[s])
+    {
+      records.push_back({ s, SliceFingerprint(slice, false) });
+    }
+  }
+  return records;
+}
+
+bool GrowingVolume::HasPixelsOf(
+  const std::vector<const SliceImage*>& slices, Execution& execution) const
+{
+  std::atomic<bool> same{ true };
+  execution.For(static_cast<std::int64_t>(this->Records.size()), 1,
+    [&](std::int64_t begin, std::int64_t end)
+    {
+      for (std::int64_t n = begin; n < end && same; ++n)
+      {
+        const auto i = static_cast<std::size_t>(n);
+        if (!(HashPixels(*slices[i]) == this->Records[i].Slice.Pixels))
+        {
+          same = false;
+        }
+      }
+    });
+  return same;
+}
+
+const SweptVolume& GrowingVolume::Update(const Sweeps& sweeps, const VolumeGrid& grid,
+  const std::array<int, 6>& extent, const SweptVolume::Options& options, bool isGrowing,
+  Execution& execution, double first, double last)
+{
+  std::vector<Record> records = MakeRecords(sweeps);
+  const std::vector<const SliceImage*> slices = Flatten(sweeps);
+  const double middle = first + 0.05 * (last - first);
+  const std::size_t before = this->Records.size();
+  const bool isContinued = before > 0 && before <= records.size() &&
+    std::equal(this->Records.begin(), this->Records.end(), records.begin(),
+      [](const Record& a, const Record& b)
+      { return a.Sweep == b.Sweep && a.Slice.HasGeometryOf(b.Slice); });
+  // grown for the first time, grown again, or made of the same slices in another way
+  const bool isKept = isGrowing || (isContinued && (before < records.size() || this->IsKept));
+  const bool isReused = this->Volume && this->IsKept && isContinued && AreEqual(grid, this->Grid) &&
+    extent == this->Extent && Tie(options) == Tie(this->Options);
+  try
+  {
+    execution.SetStage(first, middle);
+    std::size_t done = 0;
+    if (isReused && this->HasPixelsOf(slices, execution))
+    {
+      done = before;
+      std::copy(this->Records.begin(), this->Records.end(), records.begin());
+    }
+    else
+    {
+      this->Volume.reset(); // not two at a time
+      this->Volume = std::make_unique<SweptVolume>(grid, extent, options);
+    }
+    this->Added = static_cast<std::int64_t>(records.size() - done);
+
+    std::size_t begin = 0; // of the sweep
+    const auto total = static_cast<double>(std::max<std::size_t>(1, records.size() - done));
+    for (std::size_t s = 0; s < sweeps.size(); ++s)
+    {
+      const std::size_t end = begin + sweeps[s]->size();
+      const std::size_t next = std::max(begin, done);
+      if (next < end)
+      {
+        if (next == begin)
+        {
+          this->Volume->BeginSweep();
+        }
+        const std::vector<SliceImage> added(
+          sweeps[s]->begin() + static_cast<std::ptrdiff_t>(next - begin), sweeps[s]->end());
+        this->Volume->AddSlices(added, execution,
+          middle + (last - middle) * static_cast<double>(next - done) / total,
+          middle + (last - middle) * static_cast<double>(end - done) / total);
+      }
+      begin = end;
+    }
+    if (isKept && done < records.size())
+    {
+      execution.SetStage(last, last);
+      execution.For(static_cast<std::int64_t>(records.size() - done), 1,
+        [&](std::int64_t from, std::int64_t to)
+        {
+          for (std::int64_t n = from; n < to; ++n)
+          {
+            const std::size_t i = done + static_cast<std::size_t>(n);
+            records[i].Slice.Pixels = HashPixels(*slices[i]);
+          }
+        });
+    }
+  }
+  catch (...)
+  {
+    this->Volume.reset();
+    this->Records.clear();
+    this->IsKept = false;
+    throw;
+  }
+  this->Records = std::move(records);
+  this->IsKept = isKept;
+  this->Grid = grid;
+  this->Extent = extent;
+  this->Options = options;
+  return *this->Volume;
+}
+
+double GrowingVolume::GetBytes() const
+{
+  double bytes =
+    this->Volume ? static_cast<double>(SweptVolume::GetBytesPerVoxel(this->Options)) : 0;
+  for (std::size_t a = 0; a < 3; ++a)
+  {
+    bytes *= std::max(0.0, 1.0 + this->Extent[2 * a + 1] - this->Extent[2 * a]);
+  }
+  return bytes;
+}
+
+//------------------------------------------------------------------------------
+void GrowingVolume::Finish()
+{
+  if (!this->IsKept)
+  {
+    this->Volume.reset();
+  }
+}
 }

@@ -6,11 +6,404 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <set>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 namespace lacuna
 {
+namespace
+{
+// All lengths in voxel edges.
+constexpr double LargestDepth = 2;   // of data below the object's surface
+constexpr double LargestHeight = 1;  // and above it
+constexpr double GradientWidth = 1;  // standard deviation of the Gaussian that smooths the angle
+constexpr double LatticeSpacing = 5; // of the far points, and their least distance
+constexpr std::size_t NeighborCount = 24;
+constexpr double NeighborRadius = 10;
+
+class Preparation
+{
+public:
+  Preparation(const OcclusionImages& images, Execution& execution)
+    : Images(images)
+    , Run(execution)
+    , N(images.Dimensions)
+    , Stride{ 1, N[0], N[0] * N[1] }
+    , Count(N[0] * N[1] * N[2])
+  {
+    for (int c = 0; c < 3; ++c)
+    {
+      this->Step[c] = images.Spacing[c] / images.GetEdge();
+    }
+  }
+
+  OrientedData Get()
+  {
+    RequireMemory("the surface of " + std::to_string(this->Count) + " voxels",
+      16.0 * static_cast<double>(this->Count));
+    this->Run.SetStage(0, 0.2);
+    this->FindLargestRegion();
+    this->Run.Report(0.5);
+    this->FindDistances();
+    this->Run.Report(1);
+    this->FindPoints();
+    this->FindLattice();
+    this->Run.SetStage(0.2, 1);
+    this->FindNeighbors();
+    return std::move(this->Result);
+  }
+
+private:
+  std::array<std::int64_t, 3> GetIndex(std::int64_t voxel) const
+  {
+    return { voxel % this->N[0], voxel / this->N[0] % this->N[1], voxel / this->Stride[2] };
+  }
+  std::int64_t GetVoxel(const std::array<std::int64_t, 3>& index) const
+  {
+    return index[0] + this->Stride[1] * index[1] + this->Stride[2] * index[2];
+  }
+  OrientedData::Point GetPoint(const std::array<std::int64_t, 3>& index) const
+  {
+    return { this->Step[0] * static_cast<double>(index[0]),
+      this->Step[1] * static_cast<double>(index[1]),
+      this->Step[2] * static_cast<double>(index[2]) };
+  }
+  // How many voxels a length is along an axis, at least 1.
+  std::int64_t GetReach(double length, int axis) const
+  {
+    return std::max<std::int64_t>(1, std::llround(std::ceil(length / this->Step[axis])));
+  }
+
+  void FindLargestRegion()
+  {
+    std::vector<std::int32_t> label(this->Count, 0);
+    std::int32_t labels = 0;
+    std::int32_t largest = 0;
+    std::size_t size = 0;
+    std::vector<std::int64_t> region;
+    for (std::int64_t seed = 0; seed < this->Count; ++seed)
+    {
+      if (!this->Images.Object[seed] || label[seed])
+      {
+        continue;
+      }
+      label[seed] = ++labels;
+      region.assign(1, seed);
+      for (std::size_t i = 0; i < region.size(); ++i)
+      {
+        const auto index = this->GetIndex(region[i]);
+        for (int axis = 0; axis < 3; ++axis)
+        {
+          for (const int side : { -1, 1 })
+          {
+            const std::int64_t next = region[i] + side * this->Stride[axis];
+            const std::int64_t at = index[axis] + side;
+            if (at >= 0 && at < this->N[axis] && this->Images.Object[next] && !label[next])
+            {
+              label[next] = labels;
+              region.push_back(next);
+            }
+          }
+        }
+      }
+      if (region.size() > size)
+      {
+        size = region.size();
+        largest = labels;
+      }
+    }
+    if (size == 0)
+    {
+      throw std::invalid_argument(
+        "no voxel of the angle image is object; lower the last threshold of Occluded Angle");
+    }
+    this->Inside.resize(this->Count);
+    for (std::int64_t i = 0; i < this->Count; ++i)
+    {
+      this->Inside[i] = label[i] == largest;
+    }
+  }
+
+  // Along steps between neighbouring voxels, by two sweeps (Borgefors 1986): up to 8 % too far.
+  std::vector<float> GetChamfer(unsigned char feature) const
+  {
+    std::vector<float> distance(this->Count);
+    for (std::int64_t i = 0; i < this->Count; ++i)
+    {
+      distance[i] = this->Inside[i] == feature ? 0.0F : 1e6F;
+    }
+    for (const int side : { -1, 1 })
+    {
+      for (std::int64_t q = 0; q < this->Count; ++q)
+      {
+        const std::int64_t voxel = side < 0 ? q : this->Count - 1 - q;
+        if (distance[voxel] == 0)
+        {
+          continue;
+        }
+        const auto index = this->GetIndex(voxel);
+        // the 13 neighbours that the sweep has been at
+        for (int n = 0; n < 13; ++n)
+        {
+          const std::array<int, 3> d{ side * (1 - n % 3), side * (1 - n / 3 % 3),
+            side * (1 - n / 9) };
+          std::array<std::int64_t, 3> other = index;
+          double square = 0;
+          bool within = true;
+          for (int c = 0; c < 3; ++c)
+          {
+            other[c] += d[c];
+            within = within && other[c] >= 0 && other[c] < this->N[c];
+            square += d[c] * d[c] * this->Step[c] * this->Step[c];
+          }
+          if (within)
+          {
+            distance[voxel] = std::min(distance[voxel],
+              distance[this->GetVoxel(other)] + static_cast<float>(std::sqrt(square)));
+          }
+        }
+      }
+    }
+    return distance;
+  }
+
+  // Opaque voxels mark the surface at their centres: it runs through the object's outermost ones.
+  void FindDistances()
+  {
+    this->Distance = this->GetChamfer(1);
+    const std::vector<float> depth = this->GetChamfer(0);
+    for (std::int64_t i = 0; i < this->Count; ++i)
+    {
+      if (this->Inside[i])
+      {
+        this->Distance[i] = 1 - depth[i];
+      }
+    }
+  }
+
+  // The gradient of the angle, smoothed by a Gaussian.
+  Vec3 GetGradient(const std::array<std::int64_t, 3>& index) const
+  {
+    Vec3 gradient{ 0, 0, 0 };
+    std::array<std::int64_t, 3> reach;
+    for (int c = 0; c < 3; ++c)
+    {
+      reach[c] = this->GetReach(3 * GradientWidth, c);
+    }
+    for (std::int64_t k = -reach[2]; k <= reach[2]; ++k)
+    {
+      for (std::int64_t j = -reach[1]; j <= reach[1]; ++j)
+      {
+        for (std::int64_t i = -reach[0]; i <= reach[0]; ++i)
+        {
+          const auto offset = this->GetPoint({ i, j, k });
+          const Vec3 d{ offset[0], offset[1], offset[2] };
+          std::array<std::int64_t, 3> at{ index[0] + i, index[1] + j, index[2] + k };
+          for (int c = 0; c < 3; ++c)
+          {
+            at[c] = std::clamp<std::int64_t>(at[c], 0, this->N[c] - 1);
+          }
+          const double weight = std::exp(-0.5 * Dot(d, d) / (GradientWidth * GradientWidth));
+          gradient = gradient + weight * this->Images.Angle[this->GetVoxel(at)] * d;
+        }
+      }
+    }
+    return gradient;
+  }
+
+  // Outliers that are the wall of one thing.
+  void FindGroups(const std::vector<std::int64_t>& outliers, std::int64_t data)
+  {
+    constexpr std::int64_t Reach = 2;
+    constexpr std::int64_t Fewest = 20;
+    const std::int64_t least = std::max(Fewest, data / 100);
+    std::set<std::int64_t> open(outliers.begin(), outliers.end());
+    std::int64_t largest = 0;
+    while (!open.empty())
+    {
+      std::vector<std::int64_t> group{ *open.begin() };
+      open.erase(open.begin());
+      for (std::size_t k = 0; k < group.size(); ++k)
+      {
+        const auto index = this->GetIndex(group[k]);
+        for (std::int64_t n = 0; n < 125; ++n)
+        {
+          const std::array<std::int64_t, 3> other{ index[0] + n % 5 - Reach,
+            index[1] + n / 5 % 5 - Reach, index[2] + n / 25 - Reach };
+          bool within = true;
+          for (int c = 0; c < 3; ++c)
+          {
+            within = within && other[c] >= 0 && other[c] < this->N[c];
+          }
+          if (within && open.erase(this->GetVoxel(other)) > 0)
+          {
+            group.push_back(this->GetVoxel(other));
+          }
+        }
+      }
+      const auto size = static_cast<std::int64_t>(group.size());
+      this->Result.Together += size >= least ? size : 0;
+      if (size >= least && size > largest)
+      {
+        largest = size;
+        this->Result.TogetherAt = this->GetIndex(group[group.size() / 2]);
+      }
+    }
+  }
+
+  void FindPoints()
+  {
+    std::int64_t data = 0;
+    std::vector<std::int64_t> outliers;
+    for (std::int64_t i = 0; i < this->Count; ++i)
+    {
+      if (!this->Images.Data[i])
+      {
+        continue;
+      }
+      ++data;
+      if (this->Distance[i] < -LargestDepth || this->Distance[i] > LargestHeight)
+      {
+        outliers.push_back(i);
+        continue;
+      }
+      const auto index = this->GetIndex(i);
+      const Vec3 gradient = this->GetGradient(index);
+      const Vec3 normal = Normalized(-1 * gradient);
+      if (IsFinite(normal) && Norm(normal) > 0)
+      {
+        this->Result.Points.push_back(this->GetPoint(index));
+        this->Result.Normals.push_back(normal.Elements);
+        this->Voxels.push_back(i);
+      }
+    }
+    this->Result.Outliers = data - static_cast<std::int64_t>(this->Voxels.size());
+    this->FindGroups(outliers, data);
+    if (this->Voxels.size() < MinimumSurfacePoints)
+    {
+      throw std::invalid_argument("only " + std::to_string(this->Voxels.size()) + " of " +
+        std::to_string(data) +
+        " data voxels lie on the surface of the object (its largest region); at least " +
+        std::to_string(MinimumSurfacePoints) +
+        " are needed: is this the image that the angle was computed from, and does its last "
+        "threshold give the shape?");
+    }
+  }
+
+  void FindLattice()
+  {
+    std::array<std::int64_t, 3> step;
+    for (int c = 0; c < 3; ++c)
+    {
+      step[c] = std::max<std::int64_t>(1, std::llround(LatticeSpacing / this->Step[c]));
+    }
+    for (std::int64_t k = 0; k < this->N[2]; k += step[2])
+    {
+      for (std::int64_t j = 0; j < this->N[1]; j += step[1])
+      {
+        for (std::int64_t i = 0; i < this->N[0]; i += step[0])
+        {
+          const double distance = this->Distance[this->GetVoxel({ i, j, k })];
+          if (std::abs(distance) > LatticeSpacing)
+          {
+            this->Result.FarPoints.push_back(this->GetPoint({ i, j, k }));
+            this->Result.FarDistances.push_back(distance);
+          }
+        }
+      }
+    }
+  }
+
+  // The nearest points by looking at the voxels around, farther and farther out.
+  void FindNeighbors()
+  {
+    std::vector<std::int32_t> point(this->Count, -1);
+    for (std::size_t i = 0; i < this->Voxels.size(); ++i)
+    {
+      point[this->Voxels[i]] = static_cast<std::int32_t>(i);
+    }
+    this->Result.Neighbors.resize(this->Voxels.size());
+    this->Run.For(static_cast<std::int64_t>(this->Voxels.size()), 64,
+      [&](std::int64_t begin, std::int64_t end)
+      {
+        for (std::int64_t p = begin; p < end; ++p)
+        {
+          this->FindNeighbors(p, point);
+        }
+      });
+  }
+
+  void FindNeighbors(std::int64_t p, const std::vector<std::int32_t>& point)
+  {
+    const auto index = this->GetIndex(this->Voxels[p]);
+    std::vector<std::pair<double, std::int32_t>> near;
+    for (double radius = NeighborRadius / 4; radius <= NeighborRadius; radius *= 2)
+    {
+      near.clear();
+      std::array<std::int64_t, 3> low;
+      std::array<std::int64_t, 3> high;
+      for (int c = 0; c < 3; ++c)
+      {
+        low[c] = std::max<std::int64_t>(0, index[c] - this->GetReach(radius, c));
+        high[c] = std::min(this->N[c] - 1, index[c] + this->GetReach(radius, c));
+      }
+      for (std::int64_t k = low[2]; k <= high[2]; ++k)
+      {
+        for (std::int64_t j = low[1]; j <= high[1]; ++j)
+        {
+          for (std::int64_t i = low[0]; i <= high[0]; ++i)
+          {
+            const std::int32_t other = point[this->GetVoxel({ i, j, k })];
+            const auto d = this->GetPoint({ i - index[0], j - index[1], k - index[2] });
+            const double square = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
+            if (other >= 0 && square <= radius * radius)
+            {
+              near.emplace_back(square, other);
+            }
+          }
+        }
+      }
+      if (near.size() >= NeighborCount)
+      {
+        break;
+      }
+    }
+    const std::size_t kept = std::min(NeighborCount, near.size());
+    std::partial_sort(near.begin(), near.begin() + static_cast<std::ptrdiff_t>(kept), near.end());
+    for (std::size_t i = 0; i < kept; ++i)
+    {
+      this->Result.Neighbors[p].push_back(near[i].second);
+    }
+  }
+
+  const OcclusionImages& Images;
+  Execution& Run;
+  std::array<std::int64_t, 3> N;
+  std::array<std::int64_t, 3> Stride;
+  std::int64_t Count;
+  std::array<double, 3> Step{}; // voxel spacing in voxel edges
+  std::vector<unsigned char> Inside;
+  std::vector<float> Distance; // to the object's surface, negative inside
+  std::vector<std::int64_t> Voxels;
+  OrientedData Result;
+};
+}
+
+//------------------------------------------------------------------------------
+double OcclusionImages::GetEdge() const
+{
+  return std::cbrt(this->Spacing[0] * this->Spacing[1] * this->Spacing[2]);
+}
+
+OrientedData OrientData(const OcclusionImages& images, Execution& execution)
+{
+  const Execution::NestedStages stages(execution);
+  return Preparation(images, execution).Get();
+}
+
+//------------------------------------------------------------------------------
 namespace
 {
 // All lengths in voxel edges. Chosen on shapes of known truth, see the user guide.

@@ -85,7 +85,7 @@ double GetRadialValue(const RadialLoops<Dimension>& loops, const std::array<doub
   return phi;
 }
 
-/// k of phi(r/L) = phi(r)/L^k and the factor of the energy, see lacunaRadialKernels.h.
+/// k of phi(r/L) = phi(r)/L^k and the factor of the energy, see lacunaRadialSum.cxx.
 int GetRadialPower(RadialKernel kernel);
 double GetRadialEnergyFactor(RadialKernel kernel);
 /// Degree of the polynomial part: 2 for the triharmonic, else 1.

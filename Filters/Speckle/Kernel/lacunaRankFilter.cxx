@@ -2,20 +2,257 @@
 #include "lacunaRankFilter.h"
 
 #include "lacunaBoxSlide.h"
-#include "lacunaEllipsoidCounts.h"
 #include "lacunaMedianNetwork.h"
 #include "lacunaOrderedKey.h"
 #include "lacunaRankBlocks.h"
-#include "lacunaRankQuery.h"
+#include "lacunaRankTile.h"
 #include "lacunaScalarType.h"
+#include "lacunaVectorUnit.h"
+#include "lacunaWindow.h"
 
+#include <algorithm>
+#include <array>
+#include <cstdint>
 #include <memory>
+#include <utility>
 #include <vector>
 
 namespace lacuna
 {
 namespace
 {
+// What a rank filter asks the counts of a window (BoxCounts or EllipsoidCounts) for.
+
+// The 0-based rank that parameters mean among n samples.
+inline std::int64_t RankAmong(std::int64_t n, const RankParameters& parameters)
+{
+  return std::min<std::int64_t>(
+    n - 1, static_cast<std::int64_t>(static_cast<double>(n) * parameters.Percentile / 100));
+}
+
+// Where results go: the place of the result of each window, x fastest.
+struct RankResults
+{
+  int Size[2]; // windows along x and y
+  std::uint32_t* Places;
+
+  std::uint32_t& At(int x, int y, int z) const
+  {
+    return this->Places[(std::size_t(z) * this->Size[1] + y) * this->Size[0] + x];
+  }
+};
+
+// The place of the k-th sample (0-based) in the window.
+template <class Counts>
+LACUNA_INLINE std::uint32_t SelectInLevel(
+  const Counts& counts, const RankTile& tile, int level, std::int64_t k)
+{
+  return tile.Exact ? static_cast<std::uint32_t>(level)
+                    : counts.Find(level, k - counts.Below(level));
+}
+
+// One rank, the same in all windows.
+struct FixedRankQuery
+{
+  const RankTile& Tile;
+  RankResults Results;
+  std::int64_t Rank;
+
+  template <class Counts>
+  LACUNA_INLINE void Visit(const Counts& counts, int x, int y, int z, int level)
+  {
+    this->Results.At(x, y, z) = SelectInLevel(counts, this->Tile, level, this->Rank);
+  }
+};
+
+// Which samples a truncated median keeps: [first, second) of the places.
+class Truncation
+{
+public:
+  virtual ~Truncation() = default;
+  virtual std::pair<std::uint32_t, std::uint32_t> Keep(
+    std::uint32_t least, std::uint32_t median, std::uint32_t greatest) const = 0;
+};
+
+// Any rank query, also where NaN is about and for the mode.
+struct GeneralRankQuery
+{
+  const RankTile& Tile;
+  RankResults Results;
+  const RankParameters& Parameters;
+  std::int64_t Samples; // in a window
+  const Truncation& Mode;
+
+  template <class Counts>
+  LACUNA_INLINE void Visit(const Counts& counts, int x, int y, int z, int)
+  {
+    const std::int64_t n = this->CountBefore(counts, this->Tile.Numbers);
+    std::uint32_t& place = this->Results.At(x, y, z);
+    if (n == 0)
+    {
+      place = this->Tile.Numbers; // all NaN
+      return;
+    }
+    if (!this->Parameters.Mode)
+    {
+      place = this->Select(counts, RankAmong(n, this->Parameters));
+      return;
+    }
+    const auto kept = this->Mode.Keep(
+      this->Select(counts, 0), this->Select(counts, n / 2), this->Select(counts, n - 1));
+    const std::int64_t first = this->CountBefore(counts, kept.first);
+    const std::int64_t last = this->CountBefore(counts, kept.second);
+    place = this->Select(counts, first + (last - first) / 2);
+  }
+
+private:
+  template <class Counts>
+  LACUNA_INLINE std::uint32_t Select(const Counts& counts, std::int64_t k) const
+  {
+    return SelectInLevel(counts, this->Tile, counts.FindLevel(k), k);
+  }
+
+  // Samples of the window whose place is before the given one.
+  template <class Counts>
+  LACUNA_INLINE std::int64_t CountBefore(const Counts& counts, std::uint32_t place) const
+  {
+    if (place >= this->Tile.Places)
+    {
+      return this->Samples;
+    }
+    const int level = static_cast<int>(this->Tile.LevelOf(place));
+    return counts.Below(level) + (this->Tile.Exact ? 0 : counts.CountUntil(level, place));
+  }
+};
+
+//------------------------------------------------------------------------------
+// Counts of levels in a window of any shape that slides over a RankTile: each step along x takes
+// away one sample of each run of the window and adds one (Huang 1979), so the cost grows with the
+// number of runs. Same interface for queries as BoxCounts.
+
+class EllipsoidCounts
+{
+public:
+  EllipsoidCounts(const RankTile& tile, const Window& window)
+    : Tile(tile)
+    , Size(window.GetSize())
+    , Runs(window.GetRuns())
+    , RunAt(std::size_t(Size[1]) * Size[2], nullptr)
+  {
+    for (const Window::Run& run : this->Runs)
+    {
+      this->RunAt[std::size_t(run.Z) * this->Size[1] + run.Y] = &run;
+    }
+  }
+
+  // Counts the window whose lowest corner is at (x, y, z), from the one at x - 1 unless x is 0.
+  void MoveTo(int x, int y, int z)
+  {
+    this->Corner = { x, y, z };
+    if (x == 0)
+    {
+      this->Levels.fill(0);
+      this->Groups.fill(0);
+    }
+    for (const Window::Run& run : this->Runs)
+    {
+      const std::uint8_t* row = this->Tile.Level.data() +
+        (std::size_t(z + run.Z) * this->Tile.Size[1] + y + run.Y) * this->Tile.Size[0] + x;
+      if (x == 0)
+      {
+        for (int i = run.Begin; i < run.End; ++i)
+        {
+          this->Add(row[i], 1);
+        }
+      }
+      else
+      {
+        this->Add(row[run.Begin - 1], -1);
+        this->Add(row[run.End - 1], 1);
+      }
+    }
+  }
+
+  int FindLevel(std::int64_t k) const
+  {
+    int group = 0;
+    while (k >= this->Groups[group])
+    {
+      k -= this->Groups[group++];
+    }
+    int level = 16 * group;
+    while (k >= this->Levels[level])
+    {
+      k -= this->Levels[level++];
+    }
+    return level;
+  }
+
+  std::int64_t Below(int level) const
+  {
+    std::int64_t n = 0;
+    for (int group = 0; group < level / 16; ++group)
+    {
+      n += this->Groups[group];
+    }
+    for (int l = level / 16 * 16; l < level; ++l)
+    {
+      n += this->Levels[l];
+    }
+    return n;
+  }
+
+  std::uint32_t Find(int level, std::int64_t k) const
+  {
+    std::uint32_t place = this->Tile.First[level];
+    while (!this->Holds(place) || k-- > 0)
+    {
+      ++place;
+    }
+    return place;
+  }
+
+  std::int64_t CountUntil(int level, std::uint32_t end) const
+  {
+    std::int64_t n = 0;
+    for (std::uint32_t place = this->Tile.First[level]; place < end; ++place)
+    {
+      n += this->Holds(place);
+    }
+    return n;
+  }
+
+private:
+  void Add(std::uint8_t level, int n)
+  {
+    this->Levels[level] += n;
+    this->Groups[level / 16] += n;
+  }
+
+  // True when the sample at place lies in the window.
+  bool Holds(std::uint32_t place) const
+  {
+    const int x = this->Tile.Position[0][place] - this->Corner[0];
+    const int y = this->Tile.Position[1][place] - this->Corner[1];
+    const int z = this->Tile.Position[2][place] - this->Corner[2];
+    if (y < 0 || y >= this->Size[1] || z < 0 || z >= this->Size[2])
+    {
+      return false;
+    }
+    const Window::Run* run = this->RunAt[std::size_t(z) * this->Size[1] + y];
+    return run && x >= run->Begin && x < run->End;
+  }
+
+  const RankTile& Tile;
+  const std::array<int, 3> Size;
+  const std::vector<Window::Run>& Runs;
+  std::vector<const Window::Run*> RunAt; // by (z, y); null where the window has none
+  std::array<int, 3> Corner{};
+  std::array<int, 256> Levels{};
+  std::array<int, 16> Groups{};
+};
+
+//------------------------------------------------------------------------------
 template <class T>
 class ValueTruncation : public Truncation
 {

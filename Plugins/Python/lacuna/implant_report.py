@@ -47,7 +47,7 @@ def show_bone(bone, level, view, made=lambda proxy: proxy):
         surface = made(pv.ExtractSubset(Input=bone, VOI=list(extent), SampleRateI=rates[0], SampleRateJ=rates[1], SampleRateK=rates[2]))
         image = fetch(surface)
     grey = image.GetPointData().GetScalars().GetName()
-    surface = made(pv.Contour(Input=surface, ContourBy=["POINTS", grey], Isosurfaces=[level], ComputeScalars=0))
+    surface = made(pictures.contour(surface, grey, level))
     direction = np.array([image.GetDirectionMatrix().GetElement(i, k) for i in range(3) for k in range(3)]).reshape(3, 3)
     if not np.allclose(direction, np.eye(3), atol=1e-12):
         origin = np.array(image.GetOrigin())

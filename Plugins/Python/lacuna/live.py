@@ -127,8 +127,7 @@ def show_layout(source=None):
 
     volume = simple.SweptVolume(registrationName="Live volume", Input=source, UseTooFast=1)
     smooth = simple.SpeckleFilter(registrationName="Live median", Input=volume, Operation="Median", KernelSize=[3] * 3)
-    surface = simple.Contour(registrationName="Live surface", Input=smooth, ContourBy=["POINTS", "Intensity"], Isosurfaces=[LEVEL],
-                             ComputeScalars=0)
+    surface = pictures.contour(smooth, "Intensity", LEVEL, registrationName="Live surface")
     frames = simple.SlicePlanes(registrationName="Live frames", Input=source, OutlineOnly=1, Stride=10, InvalidSlices="Show")
     simple.SetActiveView(space)
     placed = simple.Show(simple.OutputPort(source, 1), space)

@@ -22,6 +22,7 @@ BONE = 500  # Hounsfield units
 MEDIAN = 5  # voxels
 VOXELS = 8_000_000  # of a volume, at most
 PICTURES = 4  # slices shown beside a surface
+VEIL = 0.35  # their opacity, so that the surface is seen behind them
 SURE = 0.5  # of a scan region: below it Scan Region warns
 
 
@@ -59,13 +60,13 @@ def sweep_to_surface(source=None):
         if level is None or not math.isfinite(level):
             level = demo_ultrasound.surface_level(smooth)
         grey = fetch(smooth).GetPointData().GetScalars().GetName()
-        surface = made(pv.Contour(registrationName=f"Surface of {name}", Input=smooth, ContourBy=["POINTS", grey], Isosurfaces=[level], ComputeScalars=0))
+        surface = made(pictures.contour(smooth, grey, level, registrationName=f"Surface of {name}"))
         surface.UpdatePipeline()
         slices = image.GetDimensions()[2]
         if surface.GetDataInformation().GetNumberOfCells() == 0:
             raise ValueError(f"the volume of '{name}' has no surface at the grey level {level:.4g}")
     view = _view()
-    window.show_slices(source, view, max(1, (slices - 1) // (PICTURES - 1)))
+    window.show_slices(source, view, max(1, (slices - 1) // (PICTURES - 1))).Opacity = VEIL
     pictures.show_surface(surface, view, pictures.TISSUE)
     window.look_at_slices(source, view)
     views.check_orientation(view)

@@ -5,7 +5,7 @@
     window.show(reader)        # a CT as bone, upright, with letters at the edges; a sweep as slices in space
 
 The plugin calls show_applied after Apply of what is new, offer_calibration for a new Tracked Slice Reader,
-place_regions for a new RBF Hole Filler, and run for the menu.
+place_regions for a new RBF Hole Filler, show_marks while its region is chosen, and run for the menu.
 """
 import functools
 import itertools
@@ -17,13 +17,16 @@ import paraview.simple as pv
 from paraview import servermanager
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkObject
+from vtkmodules.vtkFiltersCore import vtkThreshold
 
-from lacuna import vtkLacunaRBFHoleFiller
+from lacuna import vtkLacunaDepthMapSurface, vtkLacunaRBFHoleFiller
 from lacuna import coordinates, demo_ultrasound, live, opening, pictures, solids, views
 from lacuna.data import fetch
 
 AIR, BONE = -200, 300  # Hounsfield units: below the first there is air, above the second bone
 SLICES = "Slices in Space"
+RELIEF = "Relief in Space"
+MARKED = (0.90, 0.35, 0.10)
 # Of a volume rendering: Hounsfield units, then colour or opacity. Soft tissue is not seen.
 BONE_COLORS = ((150, 0.75, 0.55, 0.45), (350, 0.90, 0.83, 0.70), (1200, 0.97, 0.95, 0.90), (3000, 1, 1, 1))
 BONE_OPACITIES = ((250, 0), (400, 0.6), (700, 0.95), (3000, 1))
@@ -84,8 +87,9 @@ def show(source, view=None):
     """Shows a source in a view, by default the active one, as who works with such data expects. Returns the source.
 
     A volume in Hounsfield units (is_ct): bone, volume rendered; alone in the view it is seen upright from the front, with letters at the
-    edges when it is known to be in patient coordinates. Tracked slices with poses: pictures where they lie. Contours in one colour: of a
-    CT that of bone, else that of tissue. The camera goes to what it cannot see.
+    edges when it is known to be in patient coordinates. Tracked slices with poses: pictures where they lie. A depth map: the surface that
+    it is of, where it lies, what is filled apart from bone. Contours in one colour: of a CT that of bone, else that of tissue. The camera
+    goes to what it cannot see.
     """
     view = view or pv.GetActiveView() or pv.CreateRenderView()
     display = pv.Show(source, view)
@@ -107,6 +111,13 @@ def show(source, view=None):
         if is_alone and len(poses):
             look_at_slices(source, view)
             return source
+    elif is_depth_map(source):
+        inwards, down, bounds = _show_relief(source, display, view)
+        if not _is_seen(bounds, view) or np.dot(view.GetActiveCamera().GetDirectionOfProjection(), inwards) < 0.5:
+            _look(view, inwards, -down)
+        if is_alone:
+            _mark_sides(view)
+        return source
     elif source.GetXMLName() == "Contour":
         display.ColorArrayName = [None, ""]
         display.AmbientColor = display.DiffuseColor = list(pictures.BONE if coordinates.is_patient(source) else pictures.TISSUE)
@@ -130,6 +141,31 @@ def is_ct(source):
         if grey.GetNumberOfComponents() == 1 and (name == "HounsfieldUnits" or (name == "Intensity" and grey.GetRange()[0] <= AIR)):
             return grey.GetRange()[1] > BONE
     return False
+
+
+def is_depth_map(source):
+    """Whether a source is a depth map, and no picture of one."""
+    is_map = source.FieldData["ImageToWorld"] and "Depth" in source.PointData.keys() and "Color" not in source.PointData.keys()
+    return bool(is_map and source.GetDataInformation().GetDataSetTypeAsString() == "vtkImageData")
+
+
+def _matrix_of(image):
+    """ImageToWorld of a depth map: 4 x 4."""
+    return np.array(image.GetFieldData().GetArray("ImageToWorld").GetTuple(0)).reshape(4, 4)
+
+
+def _show_relief(source, display, view):
+    """Shows a depth map as a surface where it lies. Returns its direction of view, its rows' direction and the surface's bounds (mm)."""
+    display.SetRepresentationType(RELIEF)
+    if "FilledMask" in source.PointData.keys():
+        pv.ColorBy(display, ("POINTS", "FilledMask"))
+        display.SetScalarBarVisibility(view, True)
+    image = fetch(source)
+    matrix = _matrix_of(image)
+    surface = vtkLacunaDepthMapSurface()
+    surface.SetInputData(image)
+    surface.Update()
+    return matrix[:3, 2], matrix[:3, 1], surface.GetOutput().GetBounds()
 
 
 def _show_bone(source, display, view):
@@ -298,7 +334,7 @@ def hole_of_map(source):
     would fill it, and the direction of the view; patient coordinates, mm. Without a hole: a circle of 15 mm around the middle.
     """
     image = fetch(source)
-    matrix = np.array(image.GetFieldData().GetArray("ImageToWorld").GetTuple(0)).reshape(4, 4)
+    matrix = _matrix_of(image)
     right, down, view = (matrix[:3, axis] for axis in range(3))
     extent = image.GetExtent()
     shape = extent[3] - extent[2] + 1, extent[1] - extent[0] + 1
@@ -332,6 +368,74 @@ def hole_of_map(source):
     return rim, rim.mean(axis=0), view
 
 
+def show_marks(identity, region=0):
+    """Shows what a region of a new RBF Hole Filler would replace, before Apply: the filler's global ID, and that of the region, or 0.
+
+    Nothing is shown where the defect is marked by arrays or selections too, and of a remote server. Never raises.
+    """
+    hide_marks()
+    try:
+        session, view = servermanager.ActiveConnection.Session, pv.GetActiveView()
+        if servermanager.ActiveConnection.IsRemote() or view is None or not hasattr(view, "GetActiveCamera"):
+            return
+        filler = servermanager._getPyProxy(session.GetRemoteObject(identity))
+        arrays = [servermanager.vtkSMPropertyHelper(filler.SMProxy, name).GetAsString() for name in ("DefectArray", "SupportArray")]
+        if any(arrays) or filler.Surface or filler.Selection:
+            return
+        region = session.GetRemoteObject(region) if region else None
+        filled = _fill_coarsely(fetch(filler.Input), region and region.GetClientSideObject())
+        if filled.GetPointData().GetArray("FilledMask") is None:
+            return  # nothing is marked; Apply says why
+        surface = vtkLacunaDepthMapSurface()
+        surface.SetInputData(filled)
+        surface.SetMaximumAngle(80)
+        marked = vtkThreshold()
+        marked.SetInputConnection(surface.GetOutputPort())
+        marked.SetInputArrayToProcess(0, 0, 0, 0, "FilledMask")
+        marked.SetThresholdFunction(vtkThreshold.THRESHOLD_UPPER)
+        marked.SetUpperThreshold(0.5)
+        marked.Update()
+        source = servermanager.sources.TrivialProducer()  # in no pipeline browser
+        source.GetClientSideObject().SetOutput(marked.GetOutput())
+        source.UpdatePipeline()
+        display = servermanager.CreateRepresentation(source, view)
+        _marks.append((view, source, display))
+        view.SMProxy.GetProperty("Representations").RemoveProxy(display.SMProxy)
+        view.SMProxy.UpdateVTKObjects()
+        view.SMProxy.GetProperty("HiddenRepresentations").AddProxy(display.SMProxy)  # not part of a state
+        view.SMProxy.UpdateVTKObjects()
+        display.Representation = "Surface"
+        display.ColorArrayName = [None, ""]
+        display.AmbientColor = display.DiffuseColor = list(MARKED)
+        towards = -_matrix_of(filled)[:3, 2]
+        display.Position = list(towards / np.linalg.norm(towards))  # 1 mm before bone that it covers
+        display.Pickable = 0
+        pv.Render(view)
+    except Exception as error:  # pylint: disable=broad-exception-caught
+        hide_marks()
+        import paraview
+        paraview.print_warning(f"Lacuna: Apply shows what is replaced; beforehand it cannot be shown, since {error}")
+
+
+_marks = []  # view, source and display of what show_marks shows
+
+
+def hide_marks():
+    """Takes away what show_marks shows. Never raises: the view may be closed."""
+    while _marks:
+        view, _source, display = _marks.pop()
+        try:
+            if view.SMProxy not in [each.SMProxy for each in pv.GetRenderViews()]:
+                continue
+            for name in ("Representations", "HiddenRepresentations"):
+                view.SMProxy.GetProperty(name).RemoveProxy(display.SMProxy)
+            view.SMProxy.UpdateVTKObjects()
+            pv.Render(view)
+        except Exception as error:  # pylint: disable=broad-exception-caught
+            import paraview
+            paraview.print_warning(f"Lacuna: what was marked may still be seen, since {error}; Delete the view to be rid of it")
+
+
 def update_quietly(algorithm):
     """Updates a VTK algorithm, whose errors and warnings are not shown."""
     display = vtkObject.GetGlobalWarningDisplay()
@@ -342,13 +446,19 @@ def update_quietly(algorithm):
         vtkObject.SetGlobalWarningDisplay(display)
 
 
-def _largest_hole(image, shape):
-    """Pixels of the largest hole: what RBF Hole Filler finds by itself, coarsely filled."""
+def _fill_coarsely(image, region=None):
+    """A depth map that is filled in a moment; without FilledMask where there is nothing to fill."""
     filler = vtkLacunaRBFHoleFiller()
     filler.SetInputData(image)
+    filler.SetDefectRegion(region)
     filler.SetNodeSpacing(5)
     update_quietly(filler)  # that there is none is no error here
-    mask = filler.GetOutput().GetPointData().GetArray("FilledMask")
+    return filler.GetOutput()
+
+
+def _largest_hole(image, shape):
+    """Pixels of the largest hole: what RBF Hole Filler finds by itself, coarsely filled."""
+    mask = _fill_coarsely(image).GetPointData().GetArray("FilledMask")
     found = np.zeros(shape, bool) if mask is None else vtk_to_numpy(mask).reshape(shape) != 0
     if not found.any():
         return found

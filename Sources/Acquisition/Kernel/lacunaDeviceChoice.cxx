@@ -1,17 +1,107 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lacunaDeviceChoice.h"
 
-#include "lacunaFastrakDevice.h"
+#include "lacunaFrameDevice.h"
 #include "lacunaOpenIGTLinkDevices.h"
 #include "lacunaSerialPort.h"
-#include "lacunaVideoDevice.h"
 
 #include <stdexcept>
+#include <string>
+#include <utility>
 
 namespace lacuna
 {
+FastrakDevice::FastrakDevice(std::unique_ptr<ByteChannel> channel, const Clock& clock,
+  const FastrakSettings& settings, std::function<bool()> stopped)
+  : Channel(std::move(channel))
+  , Tracker(*this->Channel, clock, settings, std::move(stopped))
+{
+}
+
+PoseCounts FastrakDevice::GetCounts() const
+{
+  const FastrakTracker::Counts counts = this->Tracker.GetCounts();
+  return { counts.Records, counts.Silent + counts.Late, counts.Damaged, counts.Implausible,
+    counts.Flipped };
+}
+
+FastrakLayout ChooseFastrakLayout(int baud, bool withButton, bool binary)
+{
+  constexpr double longest = 0.0145; // s on the line, beside 10 ms of the unit
+  std::vector<std::vector<int>> lists{ { 2, 4, 2, 4 }, { 2, 4 } };
+  if (!binary)
+  {
+    lists = { { 52, 54, 52, 54 }, { 52, 54 }, { 2, 4 } };
+  }
+  for (std::vector<int>& list : lists)
+  {
+    if (withButton)
+    {
+      list.push_back(static_cast<int>(FastrakItem::Button));
+    }
+    FastrakLayout layout = FastrakLayout::FromNumbers(list);
+    const auto bytes = static_cast<double>(layout.GetLength(binary));
+    if (10 * bytes / baud < longest || &list == &lists.back())
+    {
+      return layout;
+    }
+  }
+  return {};
+}
+
+PoseDeviceFactory MakeFastrakFactory(
+  const std::string& port, int baud, const Clock& clock, const FastrakSettings& settings)
+{
+  return [port, baud, &clock, settings](const std::function<bool()>& stopped)
+  {
+    return std::make_unique<FastrakDevice>(
+      std::make_unique<SerialPort>(port, baud), clock, settings, stopped);
+  };
+}
+
+//------------------------------------------------------------------------------
 namespace
 {
+// A video as an acquisition's source of frames.
+
+class VideoDevice : public FrameDevice
+{
+public:
+  // The clock goes on by itself and must live longer.
+  VideoDevice(const VideoSettings& settings, const Clock& clock, std::function<bool()> stopped);
+
+  VideoEvent Read(VideoFrame& frame) override { return this->Source.Read(frame); }
+  // One frame's time for a frame grabber (/dev/...) whose rate is known; else 0.
+  double GetLatency() const override;
+  std::vector<std::optional<double>> TakeArrivals() override { return this->Source.TakeArrivals(); }
+  VideoSource::Counts GetCounts() const override { return this->Source.GetCounts(); }
+
+private:
+  bool IsGrabber;
+  VideoSource Source;
+};
+
+VideoDevice::VideoDevice(
+  const VideoSettings& settings, const Clock& clock, std::function<bool()> stopped)
+  : IsGrabber(settings.URL.rfind("/dev/", 0) == 0)
+  , Source(settings, clock, std::move(stopped))
+{
+}
+
+double VideoDevice::GetLatency() const
+{
+  const double rate = this->Source.GetFrameRate();
+  return this->IsGrabber && rate > 0 ? 1 / rate : 0;
+}
+
+// Opens a video. The clock goes on by itself and must live longer.
+FrameDeviceFactory MakeVideoFactory(const VideoSettings& settings, const Clock& clock)
+{
+  return [settings, &clock](const std::function<bool()>& stopped)
+  { return std::make_unique<VideoDevice>(settings, clock, stopped); };
+}
+
+//------------------------------------------------------------------------------
 std::string ListPorts()
 {
   std::string text;

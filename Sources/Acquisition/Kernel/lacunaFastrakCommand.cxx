@@ -34,27 +34,9 @@ std::string Begin(char letter, int station)
   return std::string(1, letter) + std::to_string(station);
 }
 
-// A vector divided by unit, each number after a comma.
-std::string Fields(const Vec3& v, double unit = 1)
+std::string Fields(const Vec3& v)
 {
-  return "," + FormatField(v[0] / unit) + "," + FormatField(v[1] / unit) + "," +
-    FormatField(v[2] / unit);
-}
-
-std::string Filter(char letter, const std::array<double, 4>& parameters)
-{
-  std::string command(1, letter);
-  const char* comma = "";
-  for (const double parameter : parameters)
-  {
-    if (!(parameter >= 0 && parameter <= 1))
-    {
-      throw std::invalid_argument("The numbers of a FASTRAK's filter are from 0 to 1");
-    }
-    command += comma + FormatField(parameter);
-    comma = ",";
-  }
-  return command + "\r";
+  return "," + FormatField(v[0]) + "," + FormatField(v[1]) + "," + FormatField(v[2]);
 }
 }
 
@@ -78,26 +60,9 @@ std::string Active(int station, bool on)
   return Begin('l', station) + (on ? ",1\r" : ",0\r");
 }
 
-std::string Boresight(int station)
-{
-  return Begin('B', station) + "\r";
-}
-
 std::string Unboresight(int station)
 {
   return Begin('b', station) + "\r";
-}
-
-std::string ReferenceAngles(int station, const Vec3& angles)
-{
-  return Begin('G', station) + Fields(angles) + "\r";
-}
-
-std::string Alignment(
-  int station, const Vec3& origin, const Vec3& onX, const Vec3& onY, LengthUnit unit)
-{
-  const double mm = GetMillimetres(unit);
-  return Begin('A', station) + Fields(origin, mm) + Fields(onX, mm) + Fields(onY, mm) + "\r";
 }
 
 std::string ResetAlignment(int station)
@@ -105,50 +70,14 @@ std::string ResetAlignment(int station)
   return Begin('R', station) + "\r";
 }
 
-std::string Mounting(int station, const Vec3& angles)
-{
-  return Begin('r', station) + Fields(angles) + "\r";
-}
-
-std::string TipOffset(int station, const Vec3& offset, LengthUnit unit)
-{
-  return Begin('N', station) + Fields(offset, GetMillimetres(unit)) + "\r";
-}
-
-std::string Increment(int station, double distance, LengthUnit unit)
-{
-  return Begin('I', station) + "," + FormatField(distance / GetMillimetres(unit)) + "\r";
-}
-
-std::string PositionEnvelope(int station, const Vec3& maximum, const Vec3& minimum, LengthUnit unit)
-{
-  const double mm = GetMillimetres(unit);
-  return Begin('V', station) + Fields(maximum, mm) + Fields(minimum, mm) + "\r";
-}
-
-std::string AngularEnvelope(int station, const Vec3& maximum, const Vec3& minimum)
-{
-  return Begin('Q', station) + Fields(maximum) + Fields(minimum) + "\r";
-}
-
 std::string ButtonAsksForRecord(int station, bool on)
 {
   return Begin('e', station) + (on ? ",1\r" : ",0\r");
 }
 
-std::string PositionFilter(const std::array<double, 4>& parameters)
-{
-  return Filter('x', parameters);
-}
-
 std::string PositionFilterOff()
 {
   return "x,1\r";
-}
-
-std::string AttitudeFilter(const std::array<double, 4>& parameters)
-{
-  return Filter('v', parameters);
 }
 
 std::string AttitudeFilterOff()
@@ -166,11 +95,6 @@ std::string SerialRate(int baud)
       std::to_string(baud));
   }
   return "o" + std::to_string(baud / 100) + ",N,8,0\r";
-}
-
-std::string Ask(char command, int station)
-{
-  return Begin(command, station) + "\r";
 }
 }
 }

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lacunaExecution.h"
 #include "lacunaFaceRelief.h"
-#include "lacunaSplineEquations.h"
 
 #include <gtest/gtest.h>
 

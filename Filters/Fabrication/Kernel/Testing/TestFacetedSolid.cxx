@@ -184,6 +184,40 @@ TEST(FacetedSolid, ThinSheetDoesNotPassThroughItself)
   EXPECT_NEAR(solid.Volume, mesh.GetVolume(), 5e-4 * mesh.GetVolume());
 }
 
+TEST(FacetedSolid, WhereTheSheetIsThinItStaysAsItIsAndTheRestIsSimplified)
+{
+  // 0.01 mm thick on one side, 19.99 mm on the other
+  ClosedMesh mesh = lacunaMeshShapes::Sphere({ 0, 0, 0 }, 20, 60);
+  lacunaMeshShapes::Append(mesh, lacunaMeshShapes::Sphere({ 9.99, 0, 0 }, 10, 60), true);
+  const FacetedSolid solid = Make(mesh, 0.05);
+  EXPECT_FALSE(solid.Crossing);
+  EXPECT_LE(solid.Deviation, 0.05);
+  EXPECT_NEAR(solid.Volume, mesh.GetVolume(), 5e-4 * mesh.GetVolume());
+  EXPECT_LT(solid.GetNumberOfFaces(), mesh.Triangles.size() / 6);
+}
+
+TEST(FacetedSolid, FixedPointsStayWithAllTheirTriangles)
+{
+  const ClosedMesh mesh = lacunaMeshShapes::Sphere({ 0, 0, 0 }, 20, 24);
+  std::vector<char> fixed;
+  std::transform(mesh.Points.begin(), mesh.Points.end(), std::back_inserter(fixed),
+    [](const Vec3& p) { return p[0] > 5; });
+  ThreadExecution execution(2);
+  const ClosedMesh simple = SimplifyMesh(mesh, 0.2, execution, fixed);
+  const auto countFixed = [](const ClosedMesh& each)
+  {
+    return std::count_if(each.Triangles.begin(), each.Triangles.end(),
+      [&each](const ClosedMesh::Triangle& ids)
+      {
+        return std::all_of(
+          ids.begin(), ids.end(), [&each](std::int32_t id) { return each.Points[id][0] > 5; });
+      });
+  };
+  EXPECT_EQ(countFixed(simple), countFixed(mesh));
+  EXPECT_LT(
+    simple.Triangles.size() - countFixed(simple), (mesh.Triangles.size() - countFixed(mesh)) / 2);
+}
+
 TEST(FacetedSolid, FansThatShareAPointArePartedAndPointsWithoutTrianglesGo)
 {
   ClosedMesh mesh = lacunaMeshShapes::Box({ 0, 0, 0 }, { 1, 1, 1 });

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "lacunaKnotSelection.h"
+#include "lacunaSurfaceFit.h"
 
 #include "lacunaCubicSpline.h"
 #include "lacunaExecution.h"

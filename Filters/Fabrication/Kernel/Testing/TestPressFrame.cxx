@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "lacunaPressFrame.h"
+#include "lacunaPressLayout.h"
 
 #include "lacunaFlangeBlend.h"
 #include "lacunaPressScene.h"

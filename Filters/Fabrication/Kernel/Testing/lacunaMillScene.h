@@ -5,7 +5,7 @@
 #ifndef lacunaMillScene_h
 #define lacunaMillScene_h
 
-#include "lacunaMillSurface.h"
+#include "lacunaDropCutter.h"
 #include "lacunaToolPath.h"
 
 #include <algorithm>

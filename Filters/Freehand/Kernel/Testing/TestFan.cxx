@@ -3,7 +3,7 @@
 #include "lacunaSyntheticSweep.h"
 
 #include "lacunaFan.h"
-#include "lacunaFootprint.h"
+#include "lacunaSampledSlice.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "lacunaFootprint.h"
+#include "lacunaSampledSlice.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "lacunaGreyRange.h"
+#include "lacunaSliceRayCaster.h"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// A volume whose sweep grows: bit by bit that of all slices at once, made of the new slices alone,
 /// and never of old ones that are not the same any more.
-#include "lacunaGrowingVolume.h"
+#include "lacunaSweptVolume.h"
 #include "lacunaSyntheticSweep.h"
 
 #include <gtest/gtest.h>

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// Wires in a water bath are found in B-scans and followed; speckle, echoes and specks are not.
-#include "lacunaSpotDetection.h"
 #include "lacunaSpotTracking.h"
 
 #include <gtest/gtest.h>

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// Two receivers that are fixed to each other, measured by a tracker whose warp is known.
-#include "lacunaReceiverPlaces.h"
 #include "lacunaTrackerSelfTest.h"
 
 #include <gtest/gtest.h>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The method: against a brute-force oracle, and what must not change the result.
 #include "OcclusionCases.h"
-#include "lacunaDirections.h"
+#include "lacunaOccludedAngle.h"
 
 #include <gtest/gtest.h>
 

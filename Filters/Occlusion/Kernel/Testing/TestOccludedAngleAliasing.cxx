@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // No patterns of the grid: of one direction alone, and voxel by voxel of many.
 #include "OcclusionCases.h"
-#include "lacunaDirections.h"
+#include "lacunaOccludedAngle.h"
 
 #include <gtest/gtest.h>
 

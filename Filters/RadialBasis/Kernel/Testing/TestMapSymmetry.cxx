@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "lacunaMapSymmetry.h"
 #include "lacunaMirroredMap.h"
 
 #include "lacunaMirrorTest.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "lacunaBernstein.h"
+#include "lacunaTensorCell.h"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// Samples of r^2 give the cubic field r^2 + (a^2 + b^2 + c^2) / 3 for voxels of a x b x c: its
 /// surfaces are spheres, which every hit must lie on.
-#include "lacunaPerspective.h"
+#include "lacunaIsoRayCaster.h"
 #include "lacunaTestField.h"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "lacunaPerspective.h"
+#include "lacunaIsoRayCaster.h"
 #include "lacunaTestField.h"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "lacunaBlockProjection.h"
+#include "lacunaIsoField.h"
 #include "lacunaTestField.h"
 
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "SpeckleOracle.h"
-#include "lacunaMorphology.h"
+#include "lacunaSpeckleFilter.h"
 
 #include <gtest/gtest.h>
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "SpeckleOracle.h"
-#include "lacunaAdaptiveMedian.h"
 #include "lacunaRankBlocks.h"
 #include "lacunaRankFilter.h"
+#include "lacunaSpeckleFilter.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "lacunaCompressedImage.h"
+#include "lacunaDicomDecoder.h"
 
 #include <gtest/gtest.h>
 

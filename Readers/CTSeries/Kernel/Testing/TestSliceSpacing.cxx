@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "lacunaSliceSpacing.h"
+#include "lacunaCTGeometry.h"
 
 #include <gtest/gtest.h>
 

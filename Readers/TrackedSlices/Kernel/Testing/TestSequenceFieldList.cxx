@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "lacunaSequenceFieldList.h"
+#include "lacunaSequenceWriter.h"
 
 #include <gtest/gtest.h>
 

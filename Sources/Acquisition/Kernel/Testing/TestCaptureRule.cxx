@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "lacunaCaptureRule.h"
+#include "lacunaSweepTaking.h"
 
 #include <gtest/gtest.h>
 

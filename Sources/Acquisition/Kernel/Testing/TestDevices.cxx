@@ -2,7 +2,6 @@
 // The tracker as an acquisition sees it.
 #include "lacunaDeviceChoice.h"
 #include "lacunaEmulatedChannel.h"
-#include "lacunaFastrakDevice.h"
 #include "lacunaTestDevice.h"
 #include "lacunaTestPairing.h"
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "lacunaDeviceChoice.h"
 #include "lacunaEmulatedChannel.h"
 #include "lacunaExecution.h"
 #include "lacunaFastrakCommand.h"
-#include "lacunaFastrakDevice.h"
 #include "lacunaTestDevice.h"
 #include "lacunaTestPairing.h"
 
@@ -255,10 +255,10 @@ TEST(FastrakTracker, AsciiAndInches)
 
 TEST(FastrakTracker, AnAlignmentIsResetUnlessItIsToStay)
 {
-  const Vec3 origin{ 100, -200, -40 }; // the receiver stays in the half of space of +x
+  // In inches, as after power-up: the origin 100 -200 -40 mm, and points 100 mm from it on y and z.
+  // The receiver stays in the half of space of +x.
   const std::string align =
-    FastrakCommand::Alignment(1, origin, origin + Vec3{ 0, 100, 0 }, origin + Vec3{ 0, 0, 100 },
-      LengthUnit::Inch); // as after power-up
+    "A1,3.9370,-7.8740,-1.5748,3.9370,-3.9370,-1.5748,3.9370,-7.8740,2.3622\r";
   for (const FastrakReset reset :
     { FastrakReset::Nothing, FastrakReset::Frames, FastrakReset::Factory })
   {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lacunaFastrakRecord.h"
-#include "lacunaMotionCheck.h"
+#include "lacunaFastrakTracker.h"
 #include "lacunaPoseTrack.h"
 #include "lacunaTestFastrak.h"
 

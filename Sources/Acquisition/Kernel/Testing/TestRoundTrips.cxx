@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "lacunaRoundTrips.h"
+#include "lacunaFastrakTracker.h"
 
 #include <gtest/gtest.h>
 

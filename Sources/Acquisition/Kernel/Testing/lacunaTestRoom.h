@@ -4,9 +4,9 @@
 #ifndef lacunaTestRoom_h
 #define lacunaTestRoom_h
 
+#include "lacunaDeviceChoice.h"
 #include "lacunaEmulatedChannel.h"
 #include "lacunaExecution.h"
-#include "lacunaFastrakDevice.h"
 #include "lacunaSweepAcquisition.h"
 #include "lacunaTestPairing.h"
 

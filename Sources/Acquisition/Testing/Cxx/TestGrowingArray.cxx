@@ -2,7 +2,7 @@
 #include "lacunaCheck.h"
 #include "vtkDataArray.h"
 #include "vtkDoubleArray.h"
-#include "vtkLacunaGrowingArray.h"
+#include "vtkLacunaSliceStack.h"
 #include "vtkNew.h"
 
 #include <memory>

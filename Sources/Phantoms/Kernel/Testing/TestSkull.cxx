@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lacunaCounterNoise.h"
 #include "lacunaSkull.h"
-#include "lacunaSkullSurface.h"
 
 #include <gtest/gtest.h>
 

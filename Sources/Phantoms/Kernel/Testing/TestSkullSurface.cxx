@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lacunaCounterNoise.h"
-#include "lacunaSkullSurface.h"
+#include "lacunaSkull.h"
 
 #include <gtest/gtest.h>
 

@@ -2,7 +2,6 @@
 // Both devices as an acquisition has them: the tracker on a serial port, the video from the network.
 #include "lacunaAtomicFile.h"
 #include "lacunaCalibrationFile.h"
-#include "lacunaEmulatedProbe.h"
 #include "lacunaFastrakTracker.h"
 #include "lacunaPoseTrack.h"
 #include "lacunaPseudoTerminal.h"

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lacunaCalibrationFile.h"
-#include "lacunaEmulatedProbe.h"
 #include "lacunaPoseScript.h"
-#include "lacunaScannerScreen.h"
+#include "lacunaUltrasoundEmulator.h"
+#include "lacunaVideoService.h"
 
 #include <gtest/gtest.h>
 

@@ -3,7 +3,6 @@
 // libserialport, an emulated scanner's video through the network, every frame a slice and recorded.
 // The devices are a process of their own, so that what the acquisition takes can be measured.
 #include "lacunaDeviceChoice.h"
-#include "lacunaEmulatedProbe.h"
 #include "lacunaExecution.h"
 #include "lacunaPseudoTerminal.h"
 #include "lacunaSequenceHeader.h"
@@ -15,6 +14,7 @@
 #include "lacunaTestUnit.h"
 #include "lacunaUltrasoundEmulator.h"
 #include "lacunaVideoSender.h"
+#include "lacunaVideoService.h"
 
 #include <array>
 #include <atomic>

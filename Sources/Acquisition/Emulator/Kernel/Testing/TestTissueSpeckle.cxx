@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "lacunaTissueSpeckle.h"
+#include "lacunaUltrasoundEmulator.h"
 
 #include <gtest/gtest.h>
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "lacunaEmulatedProbe.h"
 #include "lacunaFanDetection.h"
 #include "lacunaTemporalCalibration.h"
 #include "lacunaUltrasoundEmulator.h"
+#include "lacunaVideoService.h"
 #include "lacunaWallDetection.h"
 #include "lacunaWaterBath.h"
 
