@@ -40,6 +40,7 @@ namespace
 {
 constexpr std::array<int, 6> Nothing{ 0, -1, 0, -1, 0, -1 };
 const char* const Stopped = "it was stopped";
+const char* const OtherStopped = "another rank has stopped";
 
 bool (*ExecutesOnAllRanks)(vtkAlgorithm*) = nullptr;
 
@@ -80,6 +81,10 @@ std::string GetError(const Callable& body)
   catch (const Aborted&)
   {
     return Stopped;
+  }
+  catch (const OtherRankStopped&)
+  {
+    return OtherStopped;
   }
   catch (const std::bad_alloc&)
   {
@@ -473,66 +478,62 @@ int Algorithm::AskForInputs(vtkInformationVector** inputs, vtkInformationVector*
 int Algorithm::MakeOutputs(vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
   const vtkLacunaRanks ranks;
-  const bool canAgree = ranks.GetNumber() > 1 &&
-    (this->Sharing == Share::Together || (ExecutesOnAllRanks && ExecutesOnAllRanks(this->Self)));
+  const Ranks alone;
+  const bool isTogether = this->Sharing == Share::Together; // also for another time step
+  const bool canMeet =
+    ranks.GetNumber() > 1 && (isTogether || (ExecutesOnAllRanks && ExecutesOnAllRanks(this->Self)));
   // VTK executes all ranks after a change, and later those that are asked for something else.
   const std::vector<double> times = this->GetTimes();
-  const bool isSame = canAgree && this->Agreed.Times == times;
-  const bool isTogether = this->Sharing == Share::Together; // also for another time step
+  const bool isSame = canMeet && this->Agreed.Times == times;
   const bool haveMet = isSame ||
-    (canAgree && !isTogether && !this->Agreed.Times.empty() && this->Agreed.Times[0] == times[0]);
+    (canMeet && !isTogether && !this->Agreed.Times.empty() && this->Agreed.Times[0] == times[0]);
+  const bool meet = canMeet && !haveMet;
+  // The first error of those that meet; nobody knows more than that he was stopped by another one.
+  const auto agree = [&](const std::string& own)
+  {
+    const std::string first = meet ? ranks.GetFirstText(own == OtherStopped ? "" : own) : own;
+    return first.empty() ? own : first;
+  };
   std::string error;
   if (isSame && !this->Agreed.Error.empty())
   {
     error = this->Agreed.Error + " (change a property to try again)";
   }
-  else if (canAgree && !haveMet)
-  {
-    error = this->MakeAgreed(Ports(inputs, outputs, ranks), ranks);
-    this->Agreed = { times, error };
-  }
   else
   {
-    const Ranks alone;
-    const Ports ports(inputs, outputs, alone, haveMet);
-    error = GetError(
-      [&]
-      {
-        this->CheckRequest(ports);
-        this->MakeWanted(ports);
-      });
+    const Ports ports(inputs, outputs, meet ? ranks : alone, haveMet);
+    error = agree(GetError([&] { this->CheckRequest(ports); }));
+    if (error.empty() && meet)
+    {
+      error = agree(this->CompareInputs(ranks));
+    }
+    if (error.empty())
+    {
+      error = agree(GetError(
+        [&]
+        {
+          if (this->HasWork(ports))
+          {
+            vtkLacunaExecution execution(this->Self);
+            this->Make(ports, execution);
+            this->Finish(ports);
+          }
+          else
+          {
+            this->MakeNothing(ports);
+          }
+        }));
+    }
+  }
+  if (meet)
+  {
+    this->Agreed = { times, error };
   }
   if (!error.empty())
   {
     this->Fail(outputs, error);
   }
   return 1; // also after an error, so that views become empty and recover
-}
-
-//------------------------------------------------------------------------------
-std::string Algorithm::MakeAgreed(const Ports& ports, const vtkLacunaRanks& ranks)
-{
-  std::string error = ranks.GetFirstText(GetError([&] { this->CheckRequest(ports); }));
-  error = error.empty() ? ranks.GetFirstText(this->CompareInputs(ranks)) : error;
-  if (!error.empty())
-  {
-    return error;
-  }
-  bool isOfOther = false;
-  error = GetError(
-    [&]
-    {
-      try
-      {
-        this->MakeWanted(ports);
-      }
-      catch (const OtherRankStopped&)
-      {
-        isOfOther = true; // it has the text
-      }
-    });
-  error = ranks.GetFirstText(error);
-  return error.empty() && isOfOther ? "another rank has stopped" : error;
 }
 
 //------------------------------------------------------------------------------
@@ -567,52 +568,36 @@ std::string Algorithm::CompareInputs(const vtkLacunaRanks& ranks) const
 }
 
 //------------------------------------------------------------------------------
-void Algorithm::MakeWanted(const Ports& ports)
+bool Algorithm::HasWork(const Ports& ports) const
 {
   const bool hasInput = this->Self->GetNumberOfInputPorts() == 0 || this->TakesEmpty ||
     !HasNoElements(ports.GetInput<vtkDataObject>());
-  if (!this->IsWanted(ports) || !hasInput)
-  {
-    this->MakeNothing(ports);
-    return;
-  }
-  vtkLacunaExecution execution(this->Self);
-  this->Make(ports, execution);
-  for (int i = 0; i < this->Self->GetNumberOfOutputPorts(); ++i)
-  {
-    auto* image = ports.GetOutput<vtkImageData>(i);
-    if (image && image->GetNumberOfPoints() > 0 && this->Sharing != Share::FirstRank)
-    {
-      image->Crop(ports.GetExtent(i).data());
-    }
-  }
-  this->Record(ports);
-}
-
-//------------------------------------------------------------------------------
-bool Algorithm::IsWanted(const Ports& ports) const
-{
   const bool isMesh = !vtkImageData::GetData(ports.GetOutputInformation());
   switch (this->Sharing)
   {
-    case Share::Together:
-      return vtkLacunaRanks().GetNumber() > 1 || ports.IsAsked(); // all of them work
+    case Share::Together: // all of them work
+      return hasInput && (vtkLacunaRanks().GetNumber() > 1 || ports.IsAsked());
     case Share::FirstRank:
-      return ports.IsFirst() && !this->IsElsewhere;
+      return hasInput && ports.IsFirst() && !this->IsElsewhere;
     case Share::EachRank:
-      return isMesh ? ports.IsFirst() : ports.IsAsked();
+      return hasInput && (isMesh ? ports.IsFirst() : ports.IsAsked());
     default:
-      return isMesh || ports.IsAsked();
+      return hasInput && (isMesh || ports.IsAsked());
   }
 }
 
 //------------------------------------------------------------------------------
-void Algorithm::Record(const Ports& ports) const
+void Algorithm::Finish(const Ports& ports) const
 {
   const std::vector<vtkDataObject*> origins = this->GetOrigins(ports);
   for (int i = 0; i < this->Self->GetNumberOfOutputPorts(); ++i)
   {
     auto* output = ports.GetOutput<vtkDataObject>(i);
+    auto* image = vtkImageData::SafeDownCast(output);
+    if (image && image->GetNumberOfPoints() > 0 && this->Sharing != Share::FirstRank)
+    {
+      image->Crop(ports.GetExtent(i).data());
+    }
     const std::string parameters = this->Parameters(i);
     const bool isThere = !HasNoElements(output) || output->GetFieldData()->GetNumberOfArrays() > 0;
     if (isThere && !(origins.empty() && parameters.empty()))

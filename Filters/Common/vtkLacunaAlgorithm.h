@@ -162,14 +162,12 @@ private:
     std::string Error;
   };
 
-  bool IsWanted(const Ports& ports) const;
   void RefuseBlocks();
   void CheckInputs(const Ports& ports, int only = -1) const;
   std::string CompareInputs(const vtkLacunaRanks& ranks) const;
   void CheckRequest(const Ports& ports) const;
-  void MakeWanted(const Ports& ports);
-  std::string MakeAgreed(const Ports& ports, const vtkLacunaRanks& ranks);
-  void Record(const Ports& ports) const;
+  bool HasWork(const Ports& ports) const;
+  void Finish(const Ports& ports) const;
   void Fail(vtkInformationVector* outputs, const std::string& error);
 
   vtkAlgorithm* Self;
