@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkLacunaAlgorithm.h"
 
+#include "lacunaCoordinates.h"
+#include "lacunaErrors.h"
+#include "lacunaInputCheck.h"
 #include "lacunaMemory.h"
 #include "lacunaPrintableText.h"
+#include "lacunaProvenance.h"
 #include "vtkAlgorithmOutput.h"
 #include "vtkCommand.h"
 #include "vtkCompositeDataSet.h"
@@ -15,10 +19,6 @@
 #include "vtkInformation.h"
 #include "vtkInformationIntegerRequestKey.h"
 #include "vtkInformationVector.h"
-#include "vtkLacunaCoordinates.h"
-#include "vtkLacunaErrors.h"
-#include "vtkLacunaInputs.h"
-#include "vtkLacunaProvenance.h"
 #include "vtkMatrix3x3.h"
 #include "vtkNew.h"
 #include "vtkPointSet.h"
@@ -397,7 +397,7 @@ void Algorithm::UpdateInput(const Ports& ports, int port)
   {
     vtkAlgorithmOutput* connection = this->Self->GetInputConnection(port, i);
     connection->GetProducer()->Update(connection->GetIndex()); // also when refused: ranks may meet
-    if (vtkLacunaWasStopped(ports.GetInputInformation(port, i)))
+    if (lacuna::WasStopped(ports.GetInputInformation(port, i)))
     {
       throw Aborted();
     }
@@ -408,10 +408,10 @@ void Algorithm::UpdateInput(const Ports& ports, int port)
 //------------------------------------------------------------------------------
 int Algorithm::AnnounceOutputs(vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
-  const vtkLacunaRanks ranks;
+  const lacuna::ControllerRanks ranks;
   const Ports ports(inputs, outputs, ranks);
   const int count = outputs->GetNumberOfInformationObjects();
-  vtkLacunaForgetAbort(this->Self);
+  lacuna::ForgetAbort(this->Self);
   this->Announced.clear();
   this->Announced = GetError(
     [&]
@@ -445,7 +445,7 @@ int Algorithm::AnnounceOutputs(vtkInformationVector** inputs, vtkInformationVect
   }
   if (!this->Announced.empty())
   {
-    vtkLacunaErrors::Empty(outputs);
+    lacuna::Errors::Empty(outputs);
     for (int i = 0; i < count; ++i)
     {
       vtkInformation* info = outputs->GetInformationObject(i);
@@ -470,14 +470,14 @@ int Algorithm::AskForInputs(vtkInformationVector** inputs, vtkInformationVector*
     }
   }
   this->Refused.clear();
-  this->Ask(Ports(inputs, outputs, vtkLacunaRanks()));
+  this->Ask(Ports(inputs, outputs, lacuna::ControllerRanks()));
   return 1;
 }
 
 //------------------------------------------------------------------------------
 int Algorithm::MakeOutputs(vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
-  const vtkLacunaRanks ranks;
+  const lacuna::ControllerRanks ranks;
   const Ranks alone;
   const bool isTogether = this->Sharing == Share::Together; // also for another time step
   const bool canMeet =
@@ -514,7 +514,7 @@ int Algorithm::MakeOutputs(vtkInformationVector** inputs, vtkInformationVector* 
         {
           if (this->HasWork(ports))
           {
-            vtkLacunaExecution execution(this->Self);
+            lacuna::AlgorithmExecution execution(this->Self);
             this->Make(ports, execution);
             this->Finish(ports);
           }
@@ -537,7 +537,7 @@ int Algorithm::MakeOutputs(vtkInformationVector** inputs, vtkInformationVector* 
 }
 
 //------------------------------------------------------------------------------
-std::string Algorithm::CompareInputs(const vtkLacunaRanks& ranks) const
+std::string Algorithm::CompareInputs(const lacuna::ControllerRanks& ranks) const
 {
   if (this->Sharing == Share::Parts)
   {
@@ -576,7 +576,7 @@ bool Algorithm::HasWork(const Ports& ports) const
   switch (this->Sharing)
   {
     case Share::Together: // all of them work
-      return hasInput && (vtkLacunaRanks().GetNumber() > 1 || ports.IsAsked());
+      return hasInput && (lacuna::ControllerRanks().GetNumber() > 1 || ports.IsAsked());
     case Share::FirstRank:
       return hasInput && ports.IsFirst() && !this->IsElsewhere;
     case Share::EachRank:
@@ -602,10 +602,10 @@ void Algorithm::Finish(const Ports& ports) const
     const bool isThere = !HasNoElements(output) || output->GetFieldData()->GetNumberOfArrays() > 0;
     if (isThere && !(origins.empty() && parameters.empty()))
     {
-      vtkLacunaProvenance::Record(output, this->Self, origins, parameters);
+      lacuna::Provenance::Record(output, this->Self, origins, parameters);
       if (!this->KeepsPlace)
       {
-        vtkLacunaCoordinates::Clear(output);
+        lacuna::Coordinates::Clear(output);
       }
     }
   }
@@ -634,7 +634,7 @@ void Algorithm::RefuseBlocks()
 //------------------------------------------------------------------------------
 void Algorithm::CheckRequest(const Ports& ports) const
 {
-  if (vtkLacunaCheckAbort(this->Self))
+  if (lacuna::CheckAbort(this->Self))
   {
     throw Aborted();
   }
@@ -664,9 +664,9 @@ void Algorithm::CheckInputs(const Ports& ports, int only) const
       {
         const std::string name = "input " + std::to_string(port);
         auto* data = ports.GetInput<vtkDataObject>(port, i);
-        require(vtkLacunaErrors::GetOf(data));
-        vtkLacunaInputs::Check(data, name);
-        vtkLacunaInputs::CheckPart(data, info, name);
+        require(lacuna::Errors::GetOf(data));
+        lacuna::InputCheck::Check(data, name);
+        lacuna::InputCheck::CheckPart(data, info, name);
       }
     });
 }
@@ -693,22 +693,22 @@ std::vector<double> Algorithm::GetTimes() const
 //------------------------------------------------------------------------------
 void Algorithm::Fail(vtkInformationVector* outputs, const std::string& error)
 {
-  vtkLacunaErrors::Empty(outputs);
+  lacuna::Errors::Empty(outputs);
   if (error == Stopped)
   {
     return; // not an error: the user asked for it
   }
-  vtkLacunaErrors::Leave(outputs, error);
+  lacuna::Errors::Leave(outputs, error);
   if (!vtkObject::GetGlobalWarningDisplay())
   {
     return;
   }
   const std::vector<double> times = this->GetTimes();
   const bool isShown = (this->Shown.Times == times && this->Shown.Error == error) ||
-    vtkLacunaErrors::GetUpstream(this->Self) == error;
+    lacuna::Errors::GetUpstream(this->Self) == error;
   if (isShown)
   {
-    vtkLacunaErrors::Repeat(this->Self, error);
+    lacuna::Errors::Repeat(this->Self, error);
     return;
   }
   if (!this->Self->HasObserver(vtkCommand::ErrorEvent)) // who may keep it to himself

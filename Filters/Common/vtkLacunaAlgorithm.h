@@ -10,11 +10,11 @@
 #ifndef vtkLacunaAlgorithm_h
 #define vtkLacunaAlgorithm_h
 
+#include "lacunaAlgorithmExecution.h"
+#include "lacunaControllerRanks.h"
+#include "lacunaVersionCompat.h" // for stops
 #include "vtkAlgorithm.h"
-#include "vtkLacunaExecution.h"
 #include "vtkLacunaFiltersCommonModule.h" // for export macro
-#include "vtkLacunaRanks.h"
-#include "vtkLacunaVersionCompat.h" // for stops
 
 #include <array>
 #include <functional>
@@ -121,7 +121,7 @@ protected:
   virtual void Ask(const Ports& ports);
 
   /// Fills the outputs.
-  virtual void Make(const Ports& ports, vtkLacunaExecution& execution) = 0;
+  virtual void Make(const Ports& ports, lacuna::AlgorithmExecution& execution) = 0;
 
   /// Fills the outputs of those that make nothing: ranks but the first, or when the input is empty. By default they are
   /// empty, without field data.
@@ -164,7 +164,7 @@ private:
 
   void RefuseBlocks();
   void CheckInputs(const Ports& ports, int only = -1) const;
-  std::string CompareInputs(const vtkLacunaRanks& ranks) const;
+  std::string CompareInputs(const lacuna::ControllerRanks& ranks) const;
   void CheckRequest(const Ports& ports) const;
   bool HasWork(const Ports& ports) const;
   void Finish(const Ports& ports) const;
@@ -241,7 +241,7 @@ private:
   {
     const vtkTimeStamp before = this->MTime;
     change();
-    this->MTime = vtkLacunaRanks().GetNumber() > 1 ? before : this->MTime;
+    this->MTime = lacuna::ControllerRanks().GetNumber() > 1 ? before : this->MTime;
   }
 };
 #endif

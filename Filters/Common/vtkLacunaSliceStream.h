@@ -3,10 +3,10 @@
  * @class   vtkLacunaSliceStream
  * @brief   Slices that are too many for the memory, read a few at a time
  *
- * A source of tracked slices (see vtkLacunaTrackedSlices.h) that cannot hold all of its slices puts
+ * A source of tracked slices (see lacunaTrackedSlices.h) that cannot hold all of its slices puts
  * out a preview: every n-th of them, as an ordinary stack, so that any filter can work on it. Its
  * field data are those of the whole sweep, and say that it is a preview
- * (vtkLacunaTrackedSlices::PreviewName). Beside it, under STREAM() in the information about its
+ * (lacuna::TrackedSlices::PreviewName). Beside it, under STREAM() in the information about its
  * output, it offers this: all slices, to be read in parts. Consumers that need each slice only once
  * take them from here, and need no more of the preview than its field data.
  *

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkLacunaWriter.h"
 
+#include "lacunaErrors.h"
 #include "lacunaExecution.h"
+#include "lacunaInputCheck.h"
 #include "lacunaOutputFile.h"
 #include "lacunaPrintableText.h"
 #include "vtkErrorCode.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
 #include "vtkLacunaAlgorithm.h"
-#include "vtkLacunaErrors.h"
-#include "vtkLacunaInputs.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 
 #include <new>
@@ -54,7 +54,7 @@ int vtkLacunaWriter::Write()
 //------------------------------------------------------------------------------
 void vtkLacunaWriter::RequireInput()
 {
-  const std::string failed = vtkLacunaErrors::GetUpstream(this);
+  const std::string failed = lacuna::Errors::GetUpstream(this);
   if (!failed.empty())
   {
     throw std::runtime_error(
@@ -65,8 +65,8 @@ void vtkLacunaWriter::RequireInput()
     throw std::runtime_error(this->Refused);
   }
   vtkDataObject* data = this->GetInputDataObject(0, 0);
-  vtkLacunaInputs::Check(data, "input 0");
-  vtkLacunaInputs::CheckPart(data, this->GetInputInformation(), "input 0");
+  lacuna::InputCheck::Check(data, "input 0");
+  lacuna::InputCheck::CheckPart(data, this->GetInputInformation(), "input 0");
 }
 
 //------------------------------------------------------------------------------

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lacunaImplantData.h"
 
+#include "lacunaArrays.h"
+#include "lacunaFieldData.h"
 #include "lacunaParameterText.h"
 #include "vtkCell.h"
 #include "vtkCellArray.h"
@@ -11,8 +13,6 @@
 #include "vtkFeatureEdges.h"
 #include "vtkIdList.h"
 #include "vtkIntArray.h"
-#include "vtkLacunaArrays.h"
-#include "vtkLacunaFieldData.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
 #include "vtkPoints.h"
@@ -51,7 +51,7 @@ void AddArray(vtkPolyData* output, const char* name, const std::vector<double>& 
 {
   vtkNew<vtkDoubleArray> array;
   array->SetName(name);
-  vtkLacunaArrays::SetNumberOfTuples(array, static_cast<vtkIdType>(values.size()));
+  lacuna::Arrays::SetNumberOfTuples(array, static_cast<vtkIdType>(values.size()));
   std::copy(values.begin(), values.end(), array->GetPointer(0));
   output->GetPointData()->AddArray(array);
 }
@@ -181,18 +181,18 @@ void SkullHoles::SetOutput(vtkPolyData* output, int first) const
     }
   }
   vtkNew<vtkTypeInt64Array> triangles;
-  vtkLacunaArrays::SetNumberOfTuples(triangles, static_cast<vtkIdType>(corners.size()));
+  lacuna::Arrays::SetNumberOfTuples(triangles, static_cast<vtkIdType>(corners.size()));
   std::copy(corners.begin(), corners.end(), triangles->GetPointer(0));
   output->SetPoints(points);
-  vtkLacunaArrays::SetTriangles(output, triangles);
+  lacuna::Arrays::SetTriangles(output, triangles);
   output->GetCellData()->SetScalars(numbers);
   std::vector<double> centers;
   for (const Vec3& c : this->Centers)
   {
     centers.insert(centers.end(), c.data(), c.data() + 3);
   }
-  vtkLacunaFieldData::Set(output, "DefectAreas", this->Areas, 1);
-  vtkLacunaFieldData::Set(output, "DefectCenters", centers, 3);
+  lacuna::FieldData::Set(output, "DefectAreas", this->Areas, 1);
+  lacuna::FieldData::Set(output, "DefectCenters", centers, 3);
 }
 
 //------------------------------------------------------------------------------
@@ -350,7 +350,7 @@ double SetTriangles(
 {
   vtkNew<vtkPoints> points;
   points->SetDataTypeToDouble();
-  vtkLacunaArrays::SetNumberOfPoints(points, static_cast<vtkIdType>(positions.size()));
+  lacuna::Arrays::SetNumberOfPoints(points, static_cast<vtkIdType>(positions.size()));
   for (std::size_t k = 0; k < positions.size(); ++k)
   {
     points->SetPoint(static_cast<vtkIdType>(k), positions[k].data());
@@ -364,7 +364,7 @@ double SetTriangles(
   }
   const auto count = static_cast<vtkIdType>(triangles.size());
   vtkNew<vtkTypeInt64Array> corners;
-  vtkLacunaArrays::SetNumberOfTuples(corners, 3 * count);
+  lacuna::Arrays::SetNumberOfTuples(corners, 3 * count);
   for (vtkIdType k = 0; k < count; ++k)
   {
     if (volume < 0)
@@ -374,7 +374,7 @@ double SetTriangles(
     std::copy_n(triangles[k].begin(), 3, corners->GetPointer(3 * k));
   }
   output->SetPoints(points);
-  vtkLacunaArrays::SetTriangles(output, corners);
+  lacuna::Arrays::SetTriangles(output, corners);
   return std::abs(volume);
 }
 
@@ -385,7 +385,7 @@ void SetImplant(vtkPolyData* output, const SkullImplant& implant)
   const auto count = static_cast<vtkIdType>(implant.Triangles.size());
   vtkNew<vtkUnsignedCharArray> faces;
   faces->SetName("ImplantFace");
-  vtkLacunaArrays::SetNumberOfTuples(faces, count);
+  lacuna::Arrays::SetNumberOfTuples(faces, count);
   for (vtkIdType k = 0; k < count; ++k)
   {
     faces->SetValue(k, static_cast<unsigned char>(implant.Faces[k]));
@@ -395,7 +395,7 @@ void SetImplant(vtkPolyData* output, const SkullImplant& implant)
   {
     vtkNew<vtkIntArray> parts;
     parts->SetName("Part");
-    vtkLacunaArrays::SetNumberOfTuples(parts, count);
+    lacuna::Arrays::SetNumberOfTuples(parts, count);
     std::copy(implant.Parts.begin(), implant.Parts.end(), parts->GetPointer(0));
     output->GetCellData()->AddArray(parts);
     AddArray(output, "PredictedError", implant.Errors);

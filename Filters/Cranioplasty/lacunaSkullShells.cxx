@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lacunaSkullShells.h"
 
+#include "lacunaArrayScalarType.h"
+#include "lacunaArrays.h"
+#include "lacunaTrackedSlices.h"
+#include "lacunaVolumeDirection.h"
 #include "lacunaVoxelSampler.h"
 #include "vtkDataArray.h"
 #include "vtkExtractVOI.h"
@@ -8,10 +12,6 @@
 #include "vtkGenericCell.h"
 #include "vtkIdList.h"
 #include "vtkImageData.h"
-#include "vtkLacunaArrays.h"
-#include "vtkLacunaScalarType.h"
-#include "vtkLacunaTrackedSlices.h"
-#include "vtkLacunaVolumeDirection.h"
 #include "vtkMatrix4x4.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
@@ -157,8 +157,8 @@ private:
 //------------------------------------------------------------------------------
 VoxelVolume GetBoneVolume(vtkImageData* image, vtkSmartPointer<vtkDataArray>& keep)
 {
-  vtkLacunaTrackedSlices::Refuse(image);
-  vtkLacunaVolumeDirection::Check(image);
+  lacuna::TrackedSlices::Refuse(image);
+  lacuna::VolumeDirection::Check(image);
   vtkDataArray* scalars = image->GetPointData()->GetScalars();
   if (!scalars || scalars->GetNumberOfComponents() != 1)
   {
@@ -169,10 +169,10 @@ VoxelVolume GetBoneVolume(vtkImageData* image, vtkSmartPointer<vtkDataArray>& ke
   if (!scalars->HasStandardMemoryLayout())
   {
     keep.TakeReference(vtkDataArray::CreateDataArray(scalars->GetDataType()));
-    vtkLacunaArrays::Copy(scalars, keep);
+    lacuna::Arrays::Copy(scalars, keep);
   }
   VoxelVolume volume;
-  volume.Type = vtkLacunaScalarType::Get(scalars);
+  volume.Type = lacuna::ArrayScalarType::Get(scalars);
   volume.Voxels = keep->GetVoidPointer(0);
   image->GetDimensions(volume.Size.data());
   const int* extent = image->GetExtent();

@@ -1,20 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkLacunaSkullBone.h"
 
+#include "lacunaArrayScalarType.h"
+#include "lacunaArrays.h"
+#include "lacunaFieldData.h"
 #include "lacunaMemory.h"
 #include "lacunaParameterText.h"
+#include "lacunaProposedLevel.h"
 #include "lacunaSkullBridge.h"
+#include "lacunaTrackedSlices.h"
 #include "lacunaVector.h"
+#include "lacunaVolumeDirection.h"
 #include "vtkCellArray.h"
 #include "vtkDataArray.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
-#include "vtkLacunaArrays.h"
-#include "vtkLacunaFieldData.h"
-#include "vtkLacunaProposedLevel.h"
-#include "vtkLacunaScalarType.h"
-#include "vtkLacunaTrackedSlices.h"
-#include "vtkLacunaVolumeDirection.h"
 #include "vtkMatrix4x4.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
@@ -116,7 +116,7 @@ struct Kinds
 };
 
 // What is bone and what is not; voxels that are Removed beforehand stay so.
-void ChooseBone(Kinds& kinds, const double spacing[3], vtkLacunaExecution& execution)
+void ChooseBone(Kinds& kinds, const double spacing[3], lacuna::AlgorithmExecution& execution)
 {
   std::vector<vtkIdType> part;
   std::vector<vtkIdType> largest;
@@ -407,7 +407,7 @@ vtkLacunaSkullBone::vtkLacunaSkullBone()
 //------------------------------------------------------------------------------
 double* vtkLacunaSkullBone::GetProposedLevelRange()
 {
-  this->ProposedLevelRange = vtkLacunaProposedLevel::Get(this, {}, 300);
+  this->ProposedLevelRange = lacuna::ProposedLevel::Get(this, {}, 300);
   // Thin bone in a voxel with tissue is below what a surface through thick bone needs.
   if (this->ProposedLevelRange[0] == 500)
   {
@@ -439,7 +439,7 @@ int vtkLacunaSkullBone::FillInputPortInformation(int port, vtkInformation* info)
 }
 
 //------------------------------------------------------------------------------
-void vtkLacunaSkullBone::Make(const lacuna::Ports& ports, vtkLacunaExecution& execution)
+void vtkLacunaSkullBone::Make(const lacuna::Ports& ports, lacuna::AlgorithmExecution& execution)
 {
   auto* input = ports.GetInput<vtkImageData>();
   if (!std::isfinite(this->Level))
@@ -451,8 +451,8 @@ void vtkLacunaSkullBone::Make(const lacuna::Ports& ports, vtkLacunaExecution& ex
     throw std::runtime_error("BridgeDiameter is " + lacuna::FormatNumber(this->BridgeDiameter) +
       " mm; it must be between 0 and 20");
   }
-  vtkLacunaTrackedSlices::Refuse(input);
-  vtkLacunaVolumeDirection::Check(input);
+  lacuna::TrackedSlices::Refuse(input);
+  lacuna::VolumeDirection::Check(input);
   vtkDataArray* scalars = input->GetPointData()->GetScalars();
   if (!scalars || scalars->GetNumberOfComponents() != 1)
   {
@@ -464,8 +464,8 @@ void vtkLacunaSkullBone::Make(const lacuna::Ports& ports, vtkLacunaExecution& ex
     static_cast<double>(count) * (scalars->GetDataTypeSize() + 1 + sizeof(vtkIdType) / 4));
   const auto bone =
     vtkSmartPointer<vtkDataArray>::Take(vtkDataArray::CreateDataArray(scalars->GetDataType()));
-  vtkLacunaArrays::Copy(scalars, bone);
-  const lacuna::ScalarType type = vtkLacunaScalarType::Get(bone);
+  lacuna::Arrays::Copy(scalars, bone);
+  const lacuna::ScalarType type = lacuna::ArrayScalarType::Get(bone);
   Kinds kinds;
   input->GetDimensions(kinds.Size);
   kinds.Of.assign(static_cast<std::size_t>(count), Below);
@@ -526,10 +526,10 @@ void vtkLacunaSkullBone::Make(const lacuna::Ports& ports, vtkLacunaExecution& ex
   output->ShallowCopy(input);
   output->GetPointData()->SetScalars(bone);
   const double* spacing = input->GetSpacing();
-  vtkLacunaFieldData::Set(output, "BoneLevel", { this->Level }, 1);
-  vtkLacunaFieldData::Set(output, "RemovedVolume",
+  lacuna::FieldData::Set(output, "BoneLevel", { this->Level }, 1);
+  lacuna::FieldData::Set(output, "RemovedVolume",
     { static_cast<double>(removed) * std::abs(spacing[0] * spacing[1] * spacing[2]) / 1000 }, 1);
-  vtkLacunaFieldData::Set(output, "BridgedVolume",
+  lacuna::FieldData::Set(output, "BridgedVolume",
     { static_cast<double>(made) * std::abs(spacing[0] * spacing[1] * spacing[2]) / 1000 }, 1);
 }
 

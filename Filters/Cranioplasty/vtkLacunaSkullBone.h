@@ -68,7 +68,7 @@ protected:
   vtkLacunaSkullBone();
   ~vtkLacunaSkullBone() override = default;
   int FillInputPortInformation(int port, vtkInformation* info) override;
-  void Make(const lacuna::Ports& ports, vtkLacunaExecution& execution) override;
+  void Make(const lacuna::Ports& ports, lacuna::AlgorithmExecution& execution) override;
   std::string Parameters(int port) const override;
 
 private:

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkLacunaSkullImplant.h"
 
+#include "lacunaFieldData.h"
 #include "lacunaImplantData.h"
 #include "lacunaMemory.h"
 #include "lacunaParameterText.h"
@@ -15,7 +16,6 @@
 #include "vtkFieldData.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
-#include "vtkLacunaFieldData.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
@@ -322,7 +322,7 @@ lacuna::SkullImplantOptions vtkLacunaSkullImplant::GetOptions() const
 }
 
 //------------------------------------------------------------------------------
-void vtkLacunaSkullImplant::Make(const lacuna::Ports& ports, vtkLacunaExecution& execution)
+void vtkLacunaSkullImplant::Make(const lacuna::Ports& ports, lacuna::AlgorithmExecution& execution)
 {
   auto* image = ports.GetInput<vtkImageData>();
   auto* outline = ports.GetInput<vtkPolyData>(1);
@@ -468,9 +468,9 @@ void vtkLacunaSkullImplant::Make(const lacuna::Ports& ports, vtkLacunaExecution&
   auto* plates = ports.GetOutput<vtkPolyData>(2);
   lacuna::SetPlates(plates, implant, this->ScrewLength);
   const auto set = [&](const char* name, double value)
-  { vtkLacunaFieldData::Set(output, name, { value }, 1); };
+  { lacuna::FieldData::Set(output, name, { value }, 1); };
   const auto setPoint = [&](const char* name, const Vec3& p) {
-    vtkLacunaFieldData::Set(output, name, { p[0], p[1], p[2] }, 3);
+    lacuna::FieldData::Set(output, name, { p[0], p[1], p[2] }, 3);
   };
   const auto range = std::minmax_element(implant.Thickness.begin(), implant.Thickness.end());
   set("ChosenDefect", isDrawn ? 0 : static_cast<double>(chosen + 1));

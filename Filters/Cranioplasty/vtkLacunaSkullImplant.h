@@ -217,7 +217,7 @@ protected:
   vtkLacunaSkullImplant();
   ~vtkLacunaSkullImplant() override = default;
   int FillInputPortInformation(int port, vtkInformation* info) override;
-  void Make(const lacuna::Ports& ports, vtkLacunaExecution& execution) override;
+  void Make(const lacuna::Ports& ports, lacuna::AlgorithmExecution& execution) override;
   std::string Parameters(int port) const override;
 
 private:

@@ -1,20 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkLacunaSkullResection.h"
 
+#include "lacunaArrays.h"
+#include "lacunaFieldData.h"
 #include "lacunaImplantData.h"
 #include "lacunaMemory.h"
 #include "lacunaParameterText.h"
 #include "lacunaSkullRays.h"
 #include "lacunaSkullResection.h"
 #include "lacunaSkullShells.h"
+#include "lacunaVolumeDirection.h"
 #include "vtkDataArray.h"
 #include "vtkDataObject.h"
 #include "vtkDataSet.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
-#include "vtkLacunaArrays.h"
-#include "vtkLacunaFieldData.h"
-#include "vtkLacunaVolumeDirection.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
@@ -72,7 +72,7 @@ std::vector<Vec3> GetMask(vtkImageData* image)
     throw std::runtime_error("the tumour's image has no active point scalars with one component: "
                              "give a mask, in which the tumour is above 0.5");
   }
-  vtkLacunaVolumeDirection::Check(image);
+  lacuna::VolumeDirection::Check(image);
   const int* extent = image->GetExtent();
   const auto isTumour = [&](std::array<int, 3> voxel)
   {
@@ -183,15 +183,15 @@ void vtkLacunaSkullResection::MakeMeshes(const lacuna::VoxelVolume& volume, vtkD
     throw std::runtime_error("nothing is cut out: no bone is within the outline at this Level");
   }
   const double pieceVolume = lacuna::SetTriangles(others[1], piece.Points, piece.Triangles);
-  vtkLacunaFieldData::Set(others[1], "Volume", { pieceVolume }, 1);
+  lacuna::FieldData::Set(others[1], "Volume", { pieceVolume }, 1);
   const Vec3& way = cut.GetDirection();
-  vtkLacunaFieldData::Set(others[1], "CutDirection", { way[0], way[1], way[2] }, 3);
+  lacuna::FieldData::Set(others[1], "CutDirection", { way[0], way[1], way[2] }, 3);
   execution.SetStage(0.7, 1);
   if (this->GuideWidth > 0)
   {
     const lacuna::SkullImplant guide = cut.MakeGuide(execution);
     lacuna::SetImplant(others[2], guide);
-    vtkLacunaFieldData::Set(others[2], "Volume", { guide.Volume }, 1);
+    lacuna::FieldData::Set(others[2], "Volume", { guide.Volume }, 1);
     for (const std::string& warning : guide.Warnings)
     {
       vtkWarningMacro(<< warning);
@@ -200,7 +200,8 @@ void vtkLacunaSkullResection::MakeMeshes(const lacuna::VoxelVolume& volume, vtkD
 }
 
 //------------------------------------------------------------------------------
-void vtkLacunaSkullResection::Make(const lacuna::Ports& ports, vtkLacunaExecution& execution)
+void vtkLacunaSkullResection::Make(
+  const lacuna::Ports& ports, lacuna::AlgorithmExecution& execution)
 {
   auto* image = ports.GetInput<vtkImageData>();
   auto* outline = ports.GetInput<vtkPolyData>(1);
@@ -244,7 +245,7 @@ void vtkLacunaSkullResection::Make(const lacuna::Ports& ports, vtkLacunaExecutio
   {
     auto values =
       vtkSmartPointer<vtkDataArray>::Take(vtkDataArray::CreateDataArray(keep->GetDataType()));
-    vtkLacunaArrays::SetNumberOfTuples(values, image->GetNumberOfPoints());
+    lacuna::Arrays::SetNumberOfTuples(values, image->GetNumberOfPoints());
     values->SetName(keep->GetName());
     return values;
   };

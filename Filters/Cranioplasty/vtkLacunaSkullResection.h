@@ -97,7 +97,7 @@ protected:
   ~vtkLacunaSkullResection() override = default;
   int FillInputPortInformation(int port, vtkInformation* info) override;
   int FillOutputPortInformation(int port, vtkInformation* info) override;
-  void Make(const lacuna::Ports& ports, vtkLacunaExecution& execution) override;
+  void Make(const lacuna::Ports& ports, lacuna::AlgorithmExecution& execution) override;
   std::string Parameters(int port) const override;
   std::vector<vtkDataObject*> GetOrigins(const lacuna::Ports& ports) const override;
 

@@ -1,7 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lacunaCADContent.h"
 
+#include "lacunaCoordinates.h"
+#include "lacunaDepthMap.h"
 #include "lacunaExecution.h"
+#include "lacunaFieldData.h"
+#include "lacunaMirrored.h"
+#include "lacunaPressPosition.h"
 #include "vtkCellArray.h"
 #include "vtkCellArrayIterator.h"
 #include "vtkCompositeDataSet.h"
@@ -9,11 +14,6 @@
 #include "vtkDataSet.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
-#include "vtkLacunaCoordinates.h"
-#include "vtkLacunaDepthMap.h"
-#include "vtkLacunaFieldData.h"
-#include "vtkLacunaMirrored.h"
-#include "vtkLacunaPressPosition.h"
 #include "vtkMultiBlockDataSet.h"
 #include "vtkPartitionedDataSet.h"
 #include "vtkPartitionedDataSetCollection.h"
@@ -226,7 +226,7 @@ void lacuna::CADContent::AddMap(const Item& item, lacuna::Execution& execution)
     lacuna::CADSurface::FromMap(map, item.ToFile, this->Settings.Fit, execution);
   surface.Name = item.Name.empty() ? surface.Name : item.Name;
   const bool trim = this->Settings.Outline == TrimToOutline;
-  const bool known = map->GetPointData()->GetArray(vtkLacunaDepthMap::FilledMaskName) != nullptr;
+  const bool known = map->GetPointData()->GetArray(lacuna::DepthMap::FilledMaskName) != nullptr;
   if (trim || (known && this->Settings.Outline == OutlineCurve))
   {
     try
@@ -336,13 +336,13 @@ void lacuna::CADContent::AddPolyData(const Item& item)
 // The screw holes of an implant plate.
 void lacuna::CADContent::AddScrews(const Item& item)
 {
-  vtkDataArray* centers = vtkLacunaFieldData::Find(item.Data, "HoleCenters", 3, -1);
+  vtkDataArray* centers = lacuna::FieldData::Find(item.Data, "HoleCenters", 3, -1);
   if (!centers || centers->GetNumberOfTuples() == 0)
   {
     return;
   }
   const vtkIdType count = centers->GetNumberOfTuples();
-  vtkDataArray* axes = vtkLacunaFieldData::Get(item.Data, "HoleAxes", 3, count);
+  vtkDataArray* axes = lacuna::FieldData::Get(item.Data, "HoleAxes", 3, count);
   for (vtkIdType k = 0; k < count; ++k)
   {
     lacuna::Vec3 center;
@@ -384,12 +384,12 @@ std::string NameOf(vtkInformation* meta, const std::string& otherwise)
 // Defect Model has one, for its top, and lies in the patient.
 std::optional<lacuna::Matrix4> FindPressToPatient(vtkDataObject* data)
 {
-  vtkDataArray* array = vtkLacunaFieldData::Find(data, "PressToPatient", 16, 1);
-  if (!array || vtkLacunaCoordinates::Get(data) == vtkLacunaCoordinates::Patient)
+  vtkDataArray* array = lacuna::FieldData::Find(data, "PressToPatient", 16, 1);
+  if (!array || lacuna::Coordinates::Get(data) == lacuna::Coordinates::Patient)
   {
     return std::nullopt;
   }
-  const lacuna::Matrix4 matrix = vtkLacunaFieldData::GetMatrix(array, 0);
+  const lacuna::Matrix4 matrix = lacuna::FieldData::GetMatrix(array, 0);
   double error = matrix.IsFinite() && matrix.IsAffine() ? 0 : 1;
   for (int i = 0; i < 3; ++i)
   {
@@ -461,7 +461,7 @@ void lacuna::CADContent::Collect(vtkDataObject* data, const std::string& name, b
     item.Lost = this->FindLost(
       data, name.empty() ? "" : "block '" + name + "': ", item.PressToPatient.has_value());
     this->Items.push_back(std::move(item));
-    if (vtkLacunaMirrored::IsMarked(data))
+    if (lacuna::Mirrored::IsMarked(data))
     {
       const std::string what = (name.empty() ? "the input" : "block '" + name + "'") +
         " is a mirror image of the patient (field data Mirrored)";
@@ -485,7 +485,7 @@ std::string lacuna::CADContent::FindLost(
   std::string moved;
   try
   {
-    moved = vtkLacunaPressPosition::Check(data);
+    moved = lacuna::PressPosition::Check(data);
   }
   catch (const std::runtime_error& e)
   {
@@ -501,11 +501,11 @@ std::string lacuna::CADContent::FindLost(
     this->Warnings.push_back(prefix + moved);
     return "it was MOVED since it was made for the press";
   }
-  if (hasMatrix || vtkLacunaCoordinates::Get(data) != vtkLacunaCoordinates::Press)
+  if (hasMatrix || lacuna::Coordinates::Get(data) != lacuna::Coordinates::Press)
   {
     return {};
   }
-  const bool before = vtkLacunaFieldData::Find(data, vtkLacunaPressPosition::MovedName, 1, 1);
+  const bool before = lacuna::FieldData::Find(data, lacuna::PressPosition::MovedName, 1, 1);
   std::string why = before ? "what it is made of was MOVED since it was made for the press"
                            : "it has no PressToPatient";
   if (!asGiven)
@@ -586,8 +586,8 @@ void lacuna::CADContent::PlaceItems()
 bool lacuna::CADContent::Item::IsPatient() const
 {
   return this->Lost.empty() &&
-    (this->PressToPatient ? vtkLacunaCoordinates::GetBeforePress(this->Data)
-                          : vtkLacunaCoordinates::Get(this->Data)) == vtkLacunaCoordinates::Patient;
+    (this->PressToPatient ? lacuna::Coordinates::GetBeforePress(this->Data)
+                          : lacuna::Coordinates::Get(this->Data)) == lacuna::Coordinates::Patient;
 }
 
 //------------------------------------------------------------------------------

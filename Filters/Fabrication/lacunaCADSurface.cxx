@@ -2,12 +2,12 @@
 #include "lacunaCADSurface.h"
 
 #include "lacunaDefectContours.h"
+#include "lacunaDepthMap.h"
 #include "lacunaExecution.h"
 #include "lacunaGridChecks.h"
 #include "lacunaGridLayer.h"
 #include "vtkDataArray.h"
 #include "vtkImageData.h"
-#include "vtkLacunaDepthMap.h"
 #include "vtkPointData.h"
 
 #include <algorithm>
@@ -147,8 +147,8 @@ bool Contains(const lacuna::Loop& loop, const lacuna::Vec2& p)
 lacuna::CADSurface lacuna::CADSurface::FromMap(vtkImageData* image, const lacuna::Matrix4& toFile,
   const lacuna::SurfaceFitOptions& options, lacuna::Execution& execution)
 {
-  const vtkLacunaDepthMap map(image);
-  vtkDataArray* fitted = image->GetPointData()->GetArray(vtkLacunaDepthMap::FittedName);
+  const lacuna::DepthMap map(image);
+  vtkDataArray* fitted = image->GetPointData()->GetArray(lacuna::DepthMap::FittedName);
   const int* extent = image->GetExtent();
   const Rectangle rectangle = FindRectangle(fitted ? fitted : map.GetDepth(),
     std::int64_t{ extent[1] } - extent[0] + 1, std::int64_t{ extent[3] } - extent[2] + 1);
@@ -211,16 +211,16 @@ lacuna::CADSurface lacuna::CADSurface::FromGrid(vtkStructuredGrid* grid,
 //------------------------------------------------------------------------------
 void lacuna::CADSurface::FindOutlines(vtkImageData* image, const lacuna::SurfaceFitOptions& options)
 {
-  vtkDataArray* filled = image->GetPointData()->GetArray(vtkLacunaDepthMap::FilledMaskName);
+  vtkDataArray* filled = image->GetPointData()->GetArray(lacuna::DepthMap::FilledMaskName);
   if (!filled || filled->GetNumberOfComponents() != 1)
   {
     throw std::runtime_error(std::string("the map has no point array '") +
-      vtkLacunaDepthMap::FilledMaskName +
+      lacuna::DepthMap::FilledMaskName +
       "' with one component, which tells where the defect is; write the output of RBF Hole Filler");
   }
   const lacuna::GridSize size{ static_cast<std::int64_t>(this->Fit.U.size()),
     static_cast<std::int64_t>(this->Fit.V.size()) };
-  const lacuna::Vec2 spacing = vtkLacunaDepthMap(image).GetPixelSpacing();
+  const lacuna::Vec2 spacing = lacuna::DepthMap(image).GetPixelSpacing();
   const std::int64_t columns = image->GetDimensions()[0];
   std::vector<unsigned char> mask;
   for (std::int64_t j = 0; j < size.Rows; ++j)

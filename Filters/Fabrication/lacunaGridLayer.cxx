@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lacunaGridLayer.h"
 
+#include "lacunaDepthMap.h"
+#include "lacunaFieldData.h"
 #include "lacunaLandmarks.h"
 #include "lacunaMatrix4.h"
 #include "vtkDataArray.h"
-#include "vtkLacunaDepthMap.h"
-#include "vtkLacunaFieldData.h"
 #include "vtkPointData.h"
 #include "vtkStructuredGrid.h"
 
@@ -31,10 +31,9 @@ bool IsFlat(const std::vector<lacuna::Vec3>& points)
 bool IsPlaneOfDepthMap(vtkStructuredGrid* grid, const lacuna::GridLayer& layer)
 {
   vtkPointData* data = grid->GetPointData();
-  vtkDataArray* fitted = data->GetArray(vtkLacunaDepthMap::FittedName);
-  vtkDataArray* depths = fitted ? fitted : data->GetArray(vtkLacunaDepthMap::DepthName);
-  vtkDataArray* matrix =
-    vtkLacunaFieldData::Find(grid, vtkLacunaDepthMap::ImageToWorldName, 16, -1);
+  vtkDataArray* fitted = data->GetArray(lacuna::DepthMap::FittedName);
+  vtkDataArray* depths = fitted ? fitted : data->GetArray(lacuna::DepthMap::DepthName);
+  vtkDataArray* matrix = lacuna::FieldData::Find(grid, lacuna::DepthMap::ImageToWorldName, 16, -1);
   const auto& points = layer.Points;
   if (!depths || !matrix || matrix->GetNumberOfTuples() != 1 ||
     !std::all_of(points.begin(), points.end(), [](const auto& p) { return lacuna::IsFinite(p); }) ||
@@ -51,7 +50,7 @@ bool IsPlaneOfDepthMap(vtkStructuredGrid* grid, const lacuna::GridLayer& layer)
         static_cast<double>(k / layer.Size.Columns), depth });
     }
   }
-  const lacuna::Matrix4 toImage = vtkLacunaFieldData::GetMatrix(matrix, 0).Inverse();
+  const lacuna::Matrix4 toImage = lacuna::FieldData::GetMatrix(matrix, 0).Inverse();
   return !IsFlat(relief) ||
     std::all_of(points.begin(), points.end(),
       [&toImage](const auto& p) { return std::abs(toImage.Point(p)[2]) <= PlaneTolerance; });

@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkLacunaDefectModel.h"
 
+#include "lacunaArrays.h"
+#include "lacunaCoordinates.h"
 #include "lacunaDefectModel.h"
+#include "lacunaDepthMap.h"
+#include "lacunaFieldData.h"
+#include "lacunaFittedPart.h"
 #include "lacunaParameterText.h"
+#include "lacunaPressPosition.h"
 #include "lacunaReliefSurface.h"
+#include "lacunaSolidMesh.h"
 #include "vtkDataArray.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
-#include "vtkLacunaArrays.h"
-#include "vtkLacunaCoordinates.h"
-#include "vtkLacunaDepthMap.h"
-#include "vtkLacunaFieldData.h"
-#include "vtkLacunaFittedPart.h"
-#include "vtkLacunaPressPosition.h"
-#include "vtkLacunaSolidMesh.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
@@ -42,7 +42,7 @@ struct Input
 
   Input(vtkImageData* map, vtkLacunaDefectModel* self)
   {
-    vtkLacunaFittedPart part(map, "a model");
+    lacuna::FittedPart part(map, "a model");
     const int floor = self->GetFloorShape();
     if (floor != vtkLacunaDefectModel::Flat && floor != vtkLacunaDefectModel::Parallel)
     {
@@ -57,7 +57,7 @@ struct Input
     int dimensions[3];
     map->GetDimensions(dimensions);
     this->Scene.MapSize = { dimensions[0], dimensions[1] };
-    vtkDataArray* depths = vtkLacunaDepthMap(map).GetDepth();
+    vtkDataArray* depths = lacuna::DepthMap(map).GetDepth();
     for (vtkIdType k = 0; k < depths->GetNumberOfTuples(); ++k)
     {
       this->Scene.MapDepths.push_back(depths->GetComponent(k, 0));
@@ -81,10 +81,10 @@ void SetTop(vtkStructuredGrid* output, const lacuna::DefectModel& model,
   output->SetDimensions(static_cast<int>(size.Columns), static_cast<int>(size.Rows), 1);
   vtkNew<vtkPoints> points;
   points->SetDataTypeToDouble();
-  vtkLacunaArrays::SetNumberOfPoints(points, size.Columns * size.Rows);
+  lacuna::Arrays::SetNumberOfPoints(points, size.Columns * size.Rows);
   vtkNew<vtkUnsignedCharArray> faces;
   faces->SetName(vtkLacunaDefectModel::ModelFaceName);
-  vtkLacunaArrays::SetNumberOfTuples(faces, size.Columns * size.Rows);
+  lacuna::Arrays::SetNumberOfTuples(faces, size.Columns * size.Rows);
   vtkIdType point = 0;
   for (std::int64_t j = size.Rows - 1; j >= 0; --j)
   {
@@ -99,7 +99,7 @@ void SetTop(vtkStructuredGrid* output, const lacuna::DefectModel& model,
   }
   output->SetPoints(points);
   output->GetPointData()->SetScalars(faces);
-  vtkLacunaPressPosition::Record(output);
+  lacuna::PressPosition::Record(output);
 }
 }
 
@@ -142,7 +142,7 @@ void vtkLacunaDefectModel::Announce(const lacuna::Ports& ports)
 }
 
 //------------------------------------------------------------------------------
-void vtkLacunaDefectModel::Make(const lacuna::Ports& ports, vtkLacunaExecution& execution)
+void vtkLacunaDefectModel::Make(const lacuna::Ports& ports, lacuna::AlgorithmExecution& execution)
 {
   auto* map = ports.GetInput<vtkImageData>();
   auto* solid = ports.GetOutput<vtkPolyData>();
@@ -179,22 +179,22 @@ void vtkLacunaDefectModel::Make(const lacuna::Ports& ports, vtkLacunaExecution& 
     throw std::runtime_error("the depth map has changed since the grid was announced (a source "
                              "that changes with time?); change a property and update again");
   }
-  vtkLacunaSolidMesh::Set(solid, model, input.ToWorld, ModelFaceName);
+  lacuna::SolidMesh::Set(solid, model, input.ToWorld, ModelFaceName);
   SetTop(top, model, input.Scene, fromPress.Inverse());
 
-  vtkLacunaCoordinates::MarkPress(map, top);
+  lacuna::Coordinates::MarkPress(map, top);
   const lacuna::Matrix4 toPatient = input.ToWorld * fromPress;
   for (vtkDataObject* output :
     { static_cast<vtkDataObject*>(solid), static_cast<vtkDataObject*>(top) })
   {
-    vtkLacunaFieldData::SetMatrices(output, PressToPatientName, { toPatient });
-    vtkLacunaFieldData::Set(output, "BlockSize",
+    lacuna::FieldData::SetMatrices(output, PressToPatientName, { toPatient });
+    lacuna::FieldData::Set(output, "BlockSize",
       { spacing[0] * static_cast<double>(model.TopSize.Columns - 1),
         spacing[1] * static_cast<double>(model.TopSize.Rows - 1), model.Bottom - model.Highest },
       3);
-    vtkLacunaFieldData::Set(output, "FloorHeight", { model.Highest - model.Base }, 1);
-    vtkLacunaFieldData::Set(output, "Volume", { model.Volume }, 1);
-    vtkLacunaFieldData::Set(output, "DefectCount", { static_cast<double>(model.Defects) }, 1);
+    lacuna::FieldData::Set(output, "FloorHeight", { model.Highest - model.Base }, 1);
+    lacuna::FieldData::Set(output, "Volume", { model.Volume }, 1);
+    lacuna::FieldData::Set(output, "DefectCount", { static_cast<double>(model.Defects) }, 1);
   }
 }
 

@@ -3,7 +3,7 @@
  * @class vtkLacunaDefectModel
  * @brief the bone around a defect as a solid block with the defect open, to fit a plate by hand
  *
- * Input: a parallel depth map (vtkLacunaDepthMap) with Fitted and FilledMask, the output of
+ * Input: a parallel depth map (lacuna::DepthMap) with Fitted and FilledMask, the output of
  * vtkLacunaRBFHoleFiller. The bone is Depth as measured, outside of FilledMask.
  *
  * Output 0: vtkPolyData, a watertight, manifold, outward oriented triangle mesh in world (patient)
@@ -92,7 +92,7 @@ protected:
   int FillInputPortInformation(int port, vtkInformation* info) override;
   int FillOutputPortInformation(int port, vtkInformation* info) override;
   void Announce(const lacuna::Ports& ports) override;
-  void Make(const lacuna::Ports& ports, vtkLacunaExecution& execution) override;
+  void Make(const lacuna::Ports& ports, lacuna::AlgorithmExecution& execution) override;
   std::string Parameters(int port) const override;
 
 private:

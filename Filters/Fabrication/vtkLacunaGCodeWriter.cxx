@@ -1,21 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkLacunaGCodeWriter.h"
 
+#include "lacunaAlgorithmExecution.h"
 #include "lacunaAtomicFile.h"
+#include "lacunaFieldData.h"
 #include "lacunaGCode.h"
+#include "lacunaMirrored.h"
 #include "lacunaParameterText.h"
+#include "lacunaPressPosition.h"
 #include "lacunaPrintableText.h"
+#include "lacunaProvenance.h"
 #include "lacunaToolPath.h"
 #include "vtkCellArray.h"
 #include "vtkCellArrayIterator.h"
 #include "vtkDataArray.h"
 #include "vtkInformation.h"
-#include "vtkLacunaExecution.h"
-#include "vtkLacunaFieldData.h"
 #include "vtkLacunaMillingToolPath.h"
-#include "vtkLacunaMirrored.h"
-#include "vtkLacunaPressPosition.h"
-#include "vtkLacunaProvenance.h"
 #include "vtkLogger.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
@@ -101,7 +101,7 @@ std::vector<lacuna::GCodeMove> GetMoves(vtkPolyData* path, lacuna::Vec3& start)
 // aslant; returns a warning when it lies elsewhere.
 std::string CheckPlace(vtkPolyData* path)
 {
-  const std::optional<lacuna::LandmarkMove> found = vtkLacunaPressPosition::FindMove(path);
+  const std::optional<lacuna::LandmarkMove> found = lacuna::PressPosition::FindMove(path);
   if (!found)
   {
     return {};
@@ -149,7 +149,7 @@ std::string CheckPlace(vtkPolyData* path)
 // Of the field data, 0 when there is none. It goes into the file.
 double GetNumber(vtkPolyData* path, const char* name)
 {
-  vtkDataArray* array = vtkLacunaFieldData::Find(path, name, 1, 1);
+  vtkDataArray* array = lacuna::FieldData::Find(path, name, 1, 1);
   const double value = array ? array->GetComponent(0, 0) : 0;
   if (!(std::abs(value) <= 1e9))
   {
@@ -162,7 +162,7 @@ double GetNumber(vtkPolyData* path, const char* name)
 // Where the program's coordinates are. changed: the path lies elsewhere than it was made.
 std::string DescribePlace(vtkPolyData* path, bool changed)
 {
-  const bool before = vtkLacunaFieldData::Find(path, vtkLacunaPressPosition::MovedName, 1, 1);
+  const bool before = lacuna::FieldData::Find(path, lacuna::PressPosition::MovedName, 1, 1);
   if (!changed && !before)
   {
     return "mm, press coordinates, tool tip";
@@ -243,7 +243,7 @@ void vtkLacunaGCodeWriter::WriteProgram(vtkPolyData* path)
 {
   lacuna::Vec3 start{ 0, 0, 0 };
   const std::vector<lacuna::GCodeMove> moves = GetMoves(path, start);
-  const bool mirrored = vtkLacunaMirrored::IsMarked(path);
+  const bool mirrored = lacuna::Mirrored::IsMarked(path);
   if (mirrored && !this->AllowMirrored)
   {
     throw std::runtime_error(
@@ -281,7 +281,7 @@ void vtkLacunaGCodeWriter::WriteProgram(vtkPolyData* path)
   {
     options.Footer = this->Footer;
   }
-  const std::string version = std::string("Lacuna ") + vtkLacunaProvenance::GetVersion();
+  const std::string version = std::string("Lacuna ") + lacuna::Provenance::GetVersion();
   options.Comments = { version + " G-Code Writer",
     vtksys::SystemTools::GetCurrentDateTime("%Y-%m-%d %H:%M"), DescribePlace(path, !moved.empty()),
     DescribeTool(path, this->ToolNumber) };
@@ -299,12 +299,12 @@ void vtkLacunaGCodeWriter::WriteProgram(vtkPolyData* path)
     options.Comments.push_back(
       "Time about " + std::to_string(std::llround(std::ceil(time / 60))) + " min");
   }
-  for (const std::string& step : vtkLacunaProvenance::Get(path))
+  for (const std::string& step : lacuna::Provenance::Get(path))
   {
     options.Comments.push_back("Made by: " + step);
   }
 
-  vtkLacunaExecution execution(this);
+  lacuna::AlgorithmExecution execution(this);
   execution.SetStage(0, 0.9);
   const lacuna::GCodeProgram program = lacuna::MakeGCode(start, moves, options, &execution);
   std::vector<std::string> warnings = program.Warnings;

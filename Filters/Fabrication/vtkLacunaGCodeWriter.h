@@ -93,7 +93,7 @@ public:
   vtkBooleanMacro(AcceptWarnings, bool);
   ///@}
   ///@{
-  /** Whether a path over a mirror image of the patient (vtkLacunaMirrored) is written, with a comment
+  /** Whether a path over a mirror image of the patient (lacuna::Mirrored) is written, with a comment
    * and a warning, instead of refused. Default off. */
   vtkSetMacro(AllowMirrored, bool);
   vtkGetMacro(AllowMirrored, bool);

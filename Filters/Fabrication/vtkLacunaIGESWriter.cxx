@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkLacunaIGESWriter.h"
 
+#include "lacunaAlgorithmExecution.h"
 #include "lacunaAtomicFile.h"
 #include "lacunaCADContent.h"
 #include "lacunaIGESDocument.h"
 #include "lacunaParameterText.h"
 #include "lacunaPrintableText.h"
+#include "lacunaProvenance.h"
 #include "vtkInformation.h"
-#include "vtkLacunaExecution.h"
-#include "vtkLacunaProvenance.h"
 #include "vtkLogger.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
@@ -180,7 +180,7 @@ void vtkLacunaIGESWriter::WriteFile()
   {
     throw std::runtime_error("there is no input");
   }
-  vtkLacunaExecution execution(this);
+  lacuna::AlgorithmExecution execution(this);
   execution.SetStage(0, 0.9);
   lacuna::CADContent::Options options;
   options.Fit.Tolerance = this->Tolerance;
@@ -191,7 +191,7 @@ void vtkLacunaIGESWriter::WriteFile()
   const lacuna::CADContent content(input, options, execution);
 
   lacuna::IGESHeader header;
-  const std::string version = std::string("Lacuna ") + vtkLacunaProvenance::GetVersion();
+  const std::string version = std::string("Lacuna ") + lacuna::Provenance::GetVersion();
   header.FileName = vtksys::SystemTools::GetFilenameName(this->FileName);
   header.System = version;
   header.Preprocessor = version + " IGES Writer";
@@ -206,8 +206,8 @@ void vtkLacunaIGESWriter::WriteFile()
     .Add("AllowMirrored", this->AllowMirrored)
     .Add("SkipUnsupported", this->SkipUnsupported);
   vtkNew<vtkPolyData> record; // takes the steps of all inputs and this one
-  vtkLacunaProvenance::Record(record, this, content.Inputs, parameters.Get());
-  for (const std::string& step : vtkLacunaProvenance::Get(record))
+  lacuna::Provenance::Record(record, this, content.Inputs, parameters.Get());
+  for (const std::string& step : lacuna::Provenance::Get(record))
   {
     header.Start.push_back("Made by: " + step);
   }

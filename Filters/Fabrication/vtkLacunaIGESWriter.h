@@ -7,7 +7,7 @@
  *
  * | input                                       | in the file                                   |
  * |---------------------------------------------|-----------------------------------------------|
- * | depth map (vtkImageData, vtkLacunaDepthMap) | a bicubic B-spline surface (128), of Fitted   |
+ * | depth map (vtkImageData, lacuna::DepthMap) | a bicubic B-spline surface (128), of Fitted   |
  * |                                             | where there is one; the defect's outline as   |
  * |                                             | curve (126), or trimmed to it (144, 142, 126) |
  * | vtkStructuredGrid with one dimension of 1   | a bicubic B-spline surface (128)              |

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkLacunaImplantPlate.h"
 
+#include "lacunaArrays.h"
+#include "lacunaFieldData.h"
+#include "lacunaFittedPart.h"
 #include "lacunaImplantPlate.h"
 #include "lacunaParameterText.h"
+#include "lacunaSolidMesh.h"
 #include "vtkDataArray.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
-#include "vtkLacunaArrays.h"
-#include "vtkLacunaFieldData.h"
-#include "vtkLacunaFittedPart.h"
-#include "vtkLacunaSolidMesh.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
 #include "vtkPointSet.h"
@@ -43,7 +43,7 @@ constexpr vtkIdType MaximumMarks = 20000;
 // The least thickness of bone within radius of p (mm from the part's first pixel), NaN when unknown.
 // The map's thickness is along the rays; the one along the axis is shorter where they are oblique.
 double GetBoneThickness(
-  vtkImageData* map, const vtkLacunaFittedPart& part, const lacuna::PlateHole& hole)
+  vtkImageData* map, const lacuna::FittedPart& part, const lacuna::PlateHole& hole)
 {
   vtkDataArray* thickness = map->GetPointData()->GetArray(BoneThicknessName);
   const double radius = std::max(hole.Radius, std::max(part.Spacing[0], part.Spacing[1]));
@@ -156,7 +156,7 @@ int vtkLacunaImplantPlate::FillInputPortInformation(int port, vtkInformation* in
 }
 
 //------------------------------------------------------------------------------
-void vtkLacunaImplantPlate::Make(const lacuna::Ports& ports, vtkLacunaExecution& execution)
+void vtkLacunaImplantPlate::Make(const lacuna::Ports& ports, lacuna::AlgorithmExecution& execution)
 {
   auto* map = ports.GetInput<vtkImageData>();
   auto* marks = ports.GetInput<vtkPointSet>(1);
@@ -176,7 +176,7 @@ void vtkLacunaImplantPlate::Make(const lacuna::Ports& ports, vtkLacunaExecution&
     throw std::runtime_error("Density is " + lacuna::FormatNumber(this->Density) +
       "; it must be a number of g/cm^3 above 0");
   }
-  const vtkLacunaFittedPart part(map, "a plate");
+  const lacuna::FittedPart part(map, "a plate");
   const lacuna::Vec2& spacing = part.Spacing;
   const lacuna::Matrix4& toWorld = part.ToWorld;
 
@@ -245,7 +245,7 @@ void vtkLacunaImplantPlate::Make(const lacuna::Ports& ports, vtkLacunaExecution&
                     "so its rim lies within the bone; use Side Outward, or prepare a seat");
   }
 
-  vtkLacunaSolidMesh::Set(output, plate, toWorld, PlateFaceName);
+  lacuna::SolidMesh::Set(output, plate, toWorld, PlateFaceName);
   std::vector<double> centers;
   std::vector<double> axes;
   std::vector<double> bone;
@@ -284,20 +284,20 @@ void vtkLacunaImplantPlate::Make(const lacuna::Ports& ports, vtkLacunaExecution&
   const lacuna::Vec3 tightest = std::isfinite(plate.MinimumRadius)
     ? toWorld.Point(plate.MinimumRadiusPoint)
     : lacuna::Vec3{ NaN, NaN, NaN };
-  vtkLacunaFieldData::Set(output, "Volume", { plate.Volume }, 1);
-  vtkLacunaFieldData::Set(output, "Mass", { plate.Volume * this->Density / 1000 }, 1);
-  vtkLacunaFieldData::Set(output, "OuterArea", { plate.OuterArea }, 1);
-  vtkLacunaFieldData::Set(output, "OutlineLength", { plate.Outline.Length }, 1);
-  vtkLacunaFieldData::Set(
+  lacuna::FieldData::Set(output, "Volume", { plate.Volume }, 1);
+  lacuna::FieldData::Set(output, "Mass", { plate.Volume * this->Density / 1000 }, 1);
+  lacuna::FieldData::Set(output, "OuterArea", { plate.OuterArea }, 1);
+  lacuna::FieldData::Set(output, "OutlineLength", { plate.Outline.Length }, 1);
+  lacuna::FieldData::Set(
     output, "MinimumThickness", { isMeasured ? plate.MinimumThickness : NaN }, 1);
-  vtkLacunaFieldData::Set(
+  lacuna::FieldData::Set(
     output, "MinimumCurvatureRadius", { isMeasured ? plate.MinimumRadius : NaN }, 1);
-  vtkLacunaFieldData::Set(output, "TightestPoint", { tightest[0], tightest[1], tightest[2] }, 3);
-  vtkLacunaFieldData::Set(output, "HoleCenters", centers, 3);
-  vtkLacunaFieldData::Set(output, "HoleAxes", axes, 3);
-  vtkLacunaFieldData::Set(output, "HoleBoneThickness", bone, 1);
-  vtkLacunaFieldData::Set(output, "HoleLand", land, 1);
-  vtkLacunaFieldData::Set(
+  lacuna::FieldData::Set(output, "TightestPoint", { tightest[0], tightest[1], tightest[2] }, 3);
+  lacuna::FieldData::Set(output, "HoleCenters", centers, 3);
+  lacuna::FieldData::Set(output, "HoleAxes", axes, 3);
+  lacuna::FieldData::Set(output, "HoleBoneThickness", bone, 1);
+  lacuna::FieldData::Set(output, "HoleLand", land, 1);
+  lacuna::FieldData::Set(
     output, "DrainageHoleCount", { static_cast<double>(plate.DrainageHoles) }, 1);
 
   this->Drilled.clear();

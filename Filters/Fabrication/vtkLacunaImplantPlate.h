@@ -3,7 +3,7 @@
  * @class vtkLacunaImplantPlate
  * @brief a plate of given thickness for the defect of a filled depth map, as a closed surface
  *
- * Input: a parallel depth map (vtkLacunaDepthMap) with Fitted and FilledMask, the output of
+ * Input: a parallel depth map (lacuna::DepthMap) with Fitted and FilledMask, the output of
  * vtkLacunaRBFHoleFiller. Second input, optional: vtkPointSet, points marked with the mouse for screw
  * holes besides HolePoints; those not farther apart than the larger diameter of a hole are one hole
  * in their middle. Output: vtkPolyData, a watertight, manifold, outward oriented triangle
@@ -176,7 +176,7 @@ protected:
   vtkLacunaImplantPlate();
   ~vtkLacunaImplantPlate() override = default;
   int FillInputPortInformation(int port, vtkInformation* info) override;
-  void Make(const lacuna::Ports& ports, vtkLacunaExecution& execution) override;
+  void Make(const lacuna::Ports& ports, lacuna::AlgorithmExecution& execution) override;
   std::string Parameters(int port) const override;
   std::vector<vtkDataObject*> GetOrigins(const lacuna::Ports& ports) const override;
 

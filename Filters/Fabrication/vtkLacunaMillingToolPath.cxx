@@ -1,20 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkLacunaMillingToolPath.h"
 
+#include "lacunaArrays.h"
+#include "lacunaCoordinates.h"
+#include "lacunaFieldData.h"
 #include "lacunaGridLayer.h"
 #include "lacunaMaterialRemoval.h"
+#include "lacunaMirrored.h"
 #include "lacunaParameterText.h"
+#include "lacunaPressPosition.h"
 #include "lacunaToolPath.h"
 #include "vtkCellArray.h"
 #include "vtkDoubleArray.h"
 #include "vtkFieldData.h"
 #include "vtkInformation.h"
 #include "vtkIntArray.h"
-#include "vtkLacunaArrays.h"
-#include "vtkLacunaCoordinates.h"
-#include "vtkLacunaFieldData.h"
-#include "vtkLacunaMirrored.h"
-#include "vtkLacunaPressPosition.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
@@ -45,7 +45,7 @@ vtkSmartPointer<vtkPoints> MakePoints(const std::vector<lacuna::Vec3>& source)
 {
   auto points = vtkSmartPointer<vtkPoints>::New();
   points->SetDataTypeToDouble();
-  vtkLacunaArrays::SetNumberOfPoints(points, static_cast<vtkIdType>(source.size()));
+  lacuna::Arrays::SetNumberOfPoints(points, static_cast<vtkIdType>(source.size()));
   double* to = vtkDoubleArray::SafeDownCast(points->GetData())->GetPointer(0);
   for (const lacuna::Vec3& p : source)
   {
@@ -59,7 +59,7 @@ Array* AddArray(vtkPolyData* output, const char* name)
 {
   vtkNew<Array> array;
   array->SetName(name);
-  vtkLacunaArrays::SetNumberOfTuples(array, output->GetNumberOfPoints());
+  lacuna::Arrays::SetNumberOfTuples(array, output->GetNumberOfPoints());
   output->GetPointData()->AddArray(array);
   return array;
 }
@@ -84,7 +84,7 @@ Totals SetPath(vtkPolyData* output, const lacuna::ToolPath& path, const FeedRate
   auto* rates = AddArray<vtkDoubleArray>(output, vtkLacunaMillingToolPath::FeedRateName);
   auto* times = AddArray<vtkDoubleArray>(output, vtkLacunaMillingToolPath::TimeName);
   vtkNew<vtkCellArray> lines;
-  vtkLacunaArrays::Reserve(lines, static_cast<vtkIdType>(path.Runs.size()),
+  lacuna::Arrays::Reserve(lines, static_cast<vtkIdType>(path.Runs.size()),
     std::accumulate(path.Runs.begin(), path.Runs.end(), vtkIdType{ 0 },
       [](vtkIdType sum, const lacuna::ToolPath::Run& run) { return sum + run.Count; }));
   Totals totals;
@@ -128,8 +128,8 @@ Totals SetPath(vtkPolyData* output, const lacuna::ToolPath& path, const FeedRate
 void MarkMoved(vtkPolyData* output, double way)
 {
   output->GetFieldData()->RemoveArray(PressToPatientName);
-  vtkLacunaCoordinates::Mark(output, vtkLacunaCoordinates::Press); // without that before the press
-  vtkLacunaFieldData::Set(output, vtkLacunaPressPosition::MovedName, { way }, 1);
+  lacuna::Coordinates::Mark(output, lacuna::Coordinates::Press); // without that before the press
+  lacuna::FieldData::Set(output, lacuna::PressPosition::MovedName, { way }, 1);
 }
 
 //------------------------------------------------------------------------------
@@ -148,7 +148,7 @@ void SetMap(vtkPolyData* output, const lacuna::LeftOverMap& map)
   const vtkIdType columns = map.Size.Columns;
   const vtkIdType cells = 2 * (columns - 1) * (map.Size.Rows - 1);
   vtkNew<vtkTypeInt64Array> corners;
-  vtkLacunaArrays::SetNumberOfTuples(corners, 3 * cells);
+  lacuna::Arrays::SetNumberOfTuples(corners, 3 * cells);
   vtkTypeInt64* to = corners->GetPointer(0);
   // seen from the mill's side they turn to the left
   const lacuna::Vec3 a = map.Points[1] - map.Points[0];
@@ -169,7 +169,7 @@ void SetMap(vtkPolyData* output, const lacuna::LeftOverMap& map)
       }
     }
   }
-  vtkLacunaArrays::SetTriangles(output, corners);
+  lacuna::Arrays::SetTriangles(output, corners);
 }
 
 //------------------------------------------------------------------------------
@@ -303,12 +303,13 @@ std::string vtkLacunaMillingToolPath::Parameters(int) const
 }
 
 //------------------------------------------------------------------------------
-void vtkLacunaMillingToolPath::Make(const lacuna::Ports& ports, vtkLacunaExecution& execution)
+void vtkLacunaMillingToolPath::Make(
+  const lacuna::Ports& ports, lacuna::AlgorithmExecution& execution)
 {
   auto* grid = ports.GetInput<vtkStructuredGrid>();
   this->CheckProperties();
-  vtkLacunaFieldData::Find(grid, PressToPatientName, 16, 1);
-  const std::string elsewhere = vtkLacunaPressPosition::Check(grid);
+  lacuna::FieldData::Find(grid, PressToPatientName, 16, 1);
+  const std::string elsewhere = lacuna::PressPosition::Check(grid);
   const bool moved = !elsewhere.empty();
   auto told = vtkSmartPointer<vtkStringArray>::New();
   told->SetName(WarningsName);
@@ -321,7 +322,7 @@ void vtkLacunaMillingToolPath::Make(const lacuna::Ports& ports, vtkLacunaExecuti
   {
     warn(elsewhere);
   }
-  if (vtkLacunaMirrored::IsMarked(grid))
+  if (lacuna::Mirrored::IsMarked(grid))
   {
     vtkWarningMacro("the surface is a mirror image of the patient (field data Mirrored), and so is "
                     "what is milled with this path");
@@ -386,7 +387,7 @@ void vtkLacunaMillingToolPath::Make(const lacuna::Ports& ports, vtkLacunaExecuti
   {
     output->GetFieldData()->ShallowCopy(grid->GetFieldData());
     const auto set = [output](const char* name, const std::vector<double>& values)
-    { vtkLacunaFieldData::Set(output, name, values, static_cast<int>(values.size())); };
+    { lacuna::FieldData::Set(output, name, values, static_cast<int>(values.size())); };
     output->GetFieldData()->RemoveArray(WarningsName); // those of Press Orientation
     output->GetFieldData()->AddArray(told);
     set("ToolShape", { static_cast<double>(this->ToolShape) });
@@ -401,10 +402,10 @@ void vtkLacunaMillingToolPath::Make(const lacuna::Ports& ports, vtkLacunaExecuti
     set("MachiningTime", { totals.Time });
     set("LargestLeftOver", { map.LargestLeftOver });
     set("LargestGouge", { map.LargestGouge });
-    vtkLacunaPressPosition::Record(output);
+    lacuna::PressPosition::Record(output);
     if (moved)
     {
-      MarkMoved(output, vtkLacunaPressPosition::FindMove(grid)->Way);
+      MarkMoved(output, lacuna::PressPosition::FindMove(grid)->Way);
     }
   }
 }

@@ -37,7 +37,7 @@
  * | MovedSincePress | mm by which the surface had been moved since it was made for the press;    |
  * |                 | only then, and without PressToPatient, which would lead elsewhere          |
  *
- * A surface that is marked as a mirror image (vtkLacunaMirrored) gives marked outputs and a warning;
+ * A surface that is marked as a mirror image (lacuna::Mirrored) gives marked outputs and a warning;
  * vtkLacunaGCodeWriter refuses them unless AllowMirrored is on.
  *
  * Warns where the tool does not fit, where a border that slopes down needs Overrun, and when the
@@ -207,7 +207,7 @@ protected:
   ~vtkLacunaMillingToolPath() override = default;
 
   int FillInputPortInformation(int port, vtkInformation* info) override;
-  void Make(const lacuna::Ports& ports, vtkLacunaExecution& execution) override;
+  void Make(const lacuna::Ports& ports, lacuna::AlgorithmExecution& execution) override;
   std::string Parameters(int port) const override;
 
 private:

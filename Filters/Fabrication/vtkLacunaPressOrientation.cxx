@@ -1,7 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkLacunaPressOrientation.h"
 
+#include "lacunaArrays.h"
+#include "lacunaCoordinates.h"
+#include "lacunaFieldData.h"
+#include "lacunaFittedPart.h"
 #include "lacunaParameterText.h"
+#include "lacunaPressPosition.h"
 #include "lacunaPressSurface.h"
 #include "vtkCharArray.h"
 #include "vtkDataArray.h"
@@ -10,11 +15,6 @@
 #include "vtkFieldData.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
-#include "vtkLacunaArrays.h"
-#include "vtkLacunaCoordinates.h"
-#include "vtkLacunaFieldData.h"
-#include "vtkLacunaFittedPart.h"
-#include "vtkLacunaPressPosition.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
@@ -81,7 +81,7 @@ public:
     const lacuna::Vec3 flat = lacuna::FitPlaneNormal(
       this->Part.Size, this->Part.Depths, this->Part.Spacing, this->Part.Mask);
     lacuna::Vec3 normal = flat;
-    vtkDataArray* given = vtkLacunaFieldData::Find(input, PlaneNormalName, 3, 1);
+    vtkDataArray* given = lacuna::FieldData::Find(input, PlaneNormalName, 3, 1);
     this->IsSolid = vtkPolyData::SafeDownCast(input) != nullptr;
     this->HasPlane = given != nullptr || this->IsSolid;
     this->OwnPlane = self->PlaneMethod == Fit && this->HasPlane;
@@ -115,7 +115,7 @@ public:
   int GetRows() const { return static_cast<int>(this->Layout.Grid.Rows); }
 
   lacuna::PressOptions Options;
-  vtkLacunaFittedPart Part;
+  lacuna::FittedPart Part;
   lacuna::ReliefSurface Surface;
   bool IsSolid = false;
   bool HasPlane = true;   // from the hole filler, or the best view of a solid
@@ -128,7 +128,7 @@ public:
   lacuna::Vec3 View{}; // unit, world
 
 private:
-  static vtkLacunaFittedPart MakePart(
+  static lacuna::FittedPart MakePart(
     lacuna::Execution& execution, vtkDataObject* input, const lacuna::PressOptions& options)
   {
     auto* solid = vtkPolyData::SafeDownCast(input);
@@ -241,16 +241,16 @@ void SetNodes(vtkStructuredGrid* output, const lacuna::PressSurface& surface, in
   const auto count = static_cast<vtkIdType>(surface.Points.size());
   vtkNew<vtkPoints> points;
   points->SetDataTypeToDouble();
-  vtkLacunaArrays::SetNumberOfPoints(points, count);
+  lacuna::Arrays::SetNumberOfPoints(points, count);
   vtkNew<vtkUnsignedCharArray> regions;
   regions->SetName(vtkLacunaPressOrientation::PressRegionName);
-  vtkLacunaArrays::SetNumberOfTuples(regions, count);
+  lacuna::Arrays::SetNumberOfTuples(regions, count);
   vtkNew<vtkCharArray> defect;
   defect->SetName(vtkLacunaPressOrientation::DefectMaskName);
-  vtkLacunaArrays::SetNumberOfTuples(defect, count);
+  lacuna::Arrays::SetNumberOfTuples(defect, count);
   vtkNew<vtkDoubleArray> angles;
   angles->SetName(vtkLacunaPressOrientation::WallAngleName);
-  vtkLacunaArrays::SetNumberOfTuples(angles, count);
+  lacuna::Arrays::SetNumberOfTuples(angles, count);
   for (vtkIdType k = 0; k < count; ++k)
   {
     points->SetPoint(k, surface.Points[k].data());
@@ -263,7 +263,7 @@ void SetNodes(vtkStructuredGrid* output, const lacuna::PressSurface& surface, in
   output->GetPointData()->SetScalars(regions);
   output->GetPointData()->AddArray(defect);
   output->GetPointData()->AddArray(angles);
-  vtkLacunaPressPosition::Record(output);
+  lacuna::PressPosition::Record(output);
 }
 
 void SetText(vtkDataObject* output, const char* name, const char* text)
@@ -291,7 +291,7 @@ void vtkLacunaPressOrientation::Announce(const lacuna::Ports& ports)
   auto* map = ports.GetInput<vtkDataSet>();
   if (map && map->GetNumberOfPoints() > 0)
   {
-    vtkLacunaExecution execution(this);
+    lacuna::AlgorithmExecution execution(this);
     const Plan plan(execution, this, map);
     if (plan.Layout.SingleValued)
     {
@@ -304,7 +304,8 @@ void vtkLacunaPressOrientation::Announce(const lacuna::Ports& ports)
 }
 
 //------------------------------------------------------------------------------
-void vtkLacunaPressOrientation::Make(const lacuna::Ports& ports, vtkLacunaExecution& execution)
+void vtkLacunaPressOrientation::Make(
+  const lacuna::Ports& ports, lacuna::AlgorithmExecution& execution)
 {
   auto* map = ports.GetInput<vtkDataSet>(); // or a solid
   auto* output = ports.GetOutput<vtkStructuredGrid>();
@@ -339,15 +340,14 @@ void vtkLacunaPressOrientation::Make(const lacuna::Ports& ports, vtkLacunaExecut
     execution.SetStage(0.3, 1);
     const lacuna::PressSurface surface = plan.Make(execution);
     SetNodes(output, surface, plan.GetColumns(), plan.GetRows());
-    vtkLacunaFieldData::SetMatrices(
-      output, PressToPatientName, { toWorld * surface.PressToRelief });
-    vtkLacunaFieldData::Set(output, "DraftAngle", { surface.DraftAngle }, 1);
-    vtkLacunaFieldData::Set(output, "Depth", { surface.Depth }, 1);
-    vtkLacunaFieldData::Set(output, "BlockSize", ToVector(surface.BlockSize), 3);
+    lacuna::FieldData::SetMatrices(output, PressToPatientName, { toWorld * surface.PressToRelief });
+    lacuna::FieldData::Set(output, "DraftAngle", { surface.DraftAngle }, 1);
+    lacuna::FieldData::Set(output, "Depth", { surface.Depth }, 1);
+    lacuna::FieldData::Set(output, "BlockSize", ToVector(surface.BlockSize), 3);
     this->WarnOfWalls(surface, toWorld);
     if (plan.IsSolid)
     {
-      vtkLacunaFieldData::Set(output, "FaceDeviation", { plan.Part.Deviation }, 1);
+      lacuna::FieldData::Set(output, "FaceDeviation", { plan.Part.Deviation }, 1);
       if (plan.Part.Deviation > LargestDeviation)
       {
         vtkWarningMacro(<< "the mould's surface is smooth, and up to "
@@ -360,24 +360,24 @@ void vtkLacunaPressOrientation::Make(const lacuna::Ports& ports, vtkLacunaExecut
   {
     if (plan.HasView)
     {
-      vtkLacunaFieldData::Set(output, SuggestedViewDirectionName, ToVector(plan.View), 3);
+      lacuna::FieldData::Set(output, SuggestedViewDirectionName, ToVector(plan.View), 3);
     }
     vtkWarningMacro(<< "the mill does not see all of the surface when its plane lies flat: at "
                     << lacuna::FormatPlace(toWorld, layout.SteepestPoint) << " it is "
                     << lacuna::FormatNumber(std::round(layout.SteepestAngle))
                     << " degrees from the press plane. There is no mould. " << plan.WayOut);
   }
-  vtkLacunaFieldData::Set(
+  lacuna::FieldData::Set(
     output, "Angles", { Degrees * layout.Frame.Theta, Degrees * layout.Frame.Psi }, 2);
-  vtkLacunaFieldData::Set(output, SingleValuedName, { layout.SingleValued ? 1.0 : 0.0 }, 1);
-  vtkLacunaFieldData::Set(output, "SurfaceOffset", { layout.Offset }, 1);
-  vtkLacunaFieldData::Set(output, "Outward", { layout.ConvexOutward ? 1.0 : 0.0 }, 1);
+  lacuna::FieldData::Set(output, SingleValuedName, { layout.SingleValued ? 1.0 : 0.0 }, 1);
+  lacuna::FieldData::Set(output, "SurfaceOffset", { layout.Offset }, 1);
+  lacuna::FieldData::Set(output, "Outward", { layout.ConvexOutward ? 1.0 : 0.0 }, 1);
   SetText(output, "PlaneSource",
     plan.OwnPlane && plan.IsSolid ? "best direction of pressing"
       : plan.OwnPlane             ? "PlaneNormal of the hole filler"
                                   : "least squares plane through Fitted over the defect");
 
-  vtkLacunaCoordinates::MarkPress(map, output);
+  lacuna::Coordinates::MarkPress(map, output);
 }
 
 //------------------------------------------------------------------------------

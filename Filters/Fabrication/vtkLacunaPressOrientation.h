@@ -3,7 +3,7 @@
  * @class vtkLacunaPressOrientation
  * @brief the surface of a mould for pressing a plate, lying flat, from a filled depth map or an implant
  *
- * Input: a parallel depth map (vtkLacunaDepthMap) with Fitted and FilledMask, the output of
+ * Input: a parallel depth map (lacuna::DepthMap) with Fitted and FilledMask, the output of
  * vtkLacunaRBFHoleFiller. Output: vtkStructuredGrid of n x m x 1 points in press coordinates (mm,
  * double, right-handed): x (fastest) and y in the press plane, regular, 0 in the middle of the block;
  * z towards the mill, which looks along -z; the press plane is z = 0. A female mould is a cavity, z <=
@@ -187,7 +187,7 @@ protected:
   ~vtkLacunaPressOrientation() override = default;
   int FillInputPortInformation(int port, vtkInformation* info) override;
   void Announce(const lacuna::Ports& ports) override;
-  void Make(const lacuna::Ports& ports, vtkLacunaExecution& execution) override;
+  void Make(const lacuna::Ports& ports, lacuna::AlgorithmExecution& execution) override;
   std::string Parameters(int port) const override;
 
 private:

@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkLacunaSTEPWriter.h"
 
+#include "lacunaAlgorithmExecution.h"
 #include "lacunaAtomicFile.h"
 #include "lacunaFacetedSolid.h"
+#include "lacunaMirrored.h"
 #include "lacunaParameterText.h"
 #include "lacunaPrintableText.h"
 #include "lacunaProgram.h"
+#include "lacunaProvenance.h"
 #include "lacunaStepProgram.h"
 #include "vtkCellArray.h"
 #include "vtkCellArrayIterator.h"
 #include "vtkInformation.h"
-#include "vtkLacunaExecution.h"
-#include "vtkLacunaMirrored.h"
-#include "vtkLacunaProvenance.h"
 #include "vtkLogger.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
@@ -116,7 +116,7 @@ void vtkLacunaSTEPWriter::WriteFile()
 //------------------------------------------------------------------------------
 void vtkLacunaSTEPWriter::WriteSolid(vtkPolyData* surface)
 {
-  const bool mirrored = vtkLacunaMirrored::IsMarked(surface);
+  const bool mirrored = lacuna::Mirrored::IsMarked(surface);
   if (mirrored && !this->AllowMirrored)
   {
     throw std::runtime_error(
@@ -126,12 +126,12 @@ void vtkLacunaSTEPWriter::WriteSolid(vtkPolyData* surface)
   }
   const std::string program = FindProgram();
   lacuna::CheckStepProgram(program);
-  vtkLacunaExecution execution(this);
+  lacuna::AlgorithmExecution execution(this);
   execution.SetStage(0, 0.7);
   const lacuna::FacetedSolid solid =
     lacuna::MakeFacetedSolid(GetMesh(surface), this->Tolerance, execution);
 
-  const std::string version = std::string("Lacuna ") + vtkLacunaProvenance::GetVersion();
+  const std::string version = std::string("Lacuna ") + lacuna::Provenance::GetVersion();
   lacuna::StepHeader header;
   header.FileName = vtksys::SystemTools::GetFilenameName(this->FileName);
   header.Title = vtksys::SystemTools::GetFilenameWithoutLastExtension(this->FileName);
@@ -149,8 +149,8 @@ void vtkLacunaSTEPWriter::WriteSolid(vtkPolyData* surface)
   lacuna::ParameterText parameters;
   parameters.Add("Tolerance", this->Tolerance).Add("AllowMirrored", this->AllowMirrored);
   vtkNew<vtkPolyData> record; // takes the steps of the input and this one
-  vtkLacunaProvenance::Record(record, this, { surface }, parameters.Get());
-  for (const std::string& step : vtkLacunaProvenance::Get(record))
+  lacuna::Provenance::Record(record, this, { surface }, parameters.Get());
+  for (const std::string& step : lacuna::Provenance::Get(record))
   {
     header.Description.push_back("Made by: " + step);
   }

@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkLacunaAssembleTrackedSlices.h"
 
+#include "lacunaFieldData.h"
 #include "lacunaParameterText.h"
+#include "lacunaPoseRecords.h"
 #include "lacunaPrintableText.h"
+#include "lacunaStackPixels.h"
+#include "lacunaTrackedSlices.h"
+#include "lacunaVolumeDirection.h"
 #include "vtkAlgorithmOutput.h"
 #include "vtkDataArray.h"
 #include "vtkFieldData.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
-#include "vtkLacunaFieldData.h"
-#include "vtkLacunaPoseRecords.h"
-#include "vtkLacunaStackPixels.h"
-#include "vtkLacunaTrackedSlices.h"
-#include "vtkLacunaVolumeDirection.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
@@ -149,7 +149,7 @@ void vtkLacunaAssembleTrackedSlices::Announce(const lacuna::Ports& ports)
   const double rows = this->RowOrder == BottomRowFirst ? -extent[2] : 0;
   out->Set(vtkDataObject::ORIGIN(), 0.0, rows, -static_cast<double>(extent[4]));
   out->Set(vtkDataObject::SPACING(), 1.0, 1.0, 1.0);
-  vtkLacunaVolumeDirection::AnnounceAlongAxes(out);
+  lacuna::VolumeDirection::AnnounceAlongAxes(out);
   vtkImageData* stack = vtkImageData::GetData(in);
   if (stack && stack->GetNumberOfPoints() > 0 && !stack->GetPointData()->GetScalars())
   {
@@ -192,7 +192,8 @@ void vtkLacunaAssembleTrackedSlices::Ask(const lacuna::Ports& ports)
 }
 
 //------------------------------------------------------------------------------
-void vtkLacunaAssembleTrackedSlices::Make(const lacuna::Ports& ports, vtkLacunaExecution& execution)
+void vtkLacunaAssembleTrackedSlices::Make(
+  const lacuna::Ports& ports, lacuna::AlgorithmExecution& execution)
 {
   auto* stack = ports.GetInput<vtkImageData>();
   auto* output = ports.GetOutput<vtkImageData>();
@@ -211,8 +212,8 @@ std::vector<vtkDataObject*> vtkLacunaAssembleTrackedSlices::GetOrigins(
 }
 
 //------------------------------------------------------------------------------
-void vtkLacunaAssembleTrackedSlices::CollectPixels(
-  vtkImageData* stack, vtkInformation* info, vtkImageData* output, vtkLacunaExecution& execution)
+void vtkLacunaAssembleTrackedSlices::CollectPixels(vtkImageData* stack, vtkInformation* info,
+  vtkImageData* output, lacuna::AlgorithmExecution& execution)
 {
   std::array<int, 6> wanted = GetExtent(info, SDDP::UPDATE_EXTENT());
   output->SetExtent(wanted.data());
@@ -222,9 +223,9 @@ void vtkLacunaAssembleTrackedSlices::CollectPixels(
   {
     return;
   }
-  vtkDataArray* pixels = vtkLacunaStackPixels::Find(stack);
+  vtkDataArray* pixels = lacuna::StackPixels::Find(stack);
   const bool flip = this->RowOrder == BottomRowFirst ||
-    (this->RowOrder == Automatic && vtkLacunaStackPixels::IsBottomRowFirst(pixels));
+    (this->RowOrder == Automatic && lacuna::StackPixels::IsBottomRowFirst(pixels));
   const std::array<int, 6> whole = GetExtent(info, SDDP::WHOLE_EXTENT());
   if (flip && this->RowOrder == Automatic && whole[2] != 0)
   {
@@ -242,7 +243,7 @@ void vtkLacunaAssembleTrackedSlices::CollectPixels(
   }
   else
   {
-    grey = vtkLacunaStackPixels::Allocate(pixels, wanted);
+    grey = lacuna::StackPixels::Allocate(pixels, wanted);
     const int count = this->TimeSteps.empty() ? wanted[5] - wanted[4] + 1 : 1;
     for (int k = wanted[4]; k <= wanted[5]; k += count)
     {
@@ -250,7 +251,7 @@ void vtkLacunaAssembleTrackedSlices::CollectPixels(
       {
         stack = this->UpdatePicture(k);
       }
-      vtkLacunaStackPixels::Copy(stack, this->TimeSteps.empty() ? k : stack->GetExtent()[4], count,
+      lacuna::StackPixels::Copy(stack, this->TimeSteps.empty() ? k : stack->GetExtent()[4], count,
         flip, { whole[2], whole[3] }, grey, wanted, k);
       execution.Report((k - wanted[4]) / (wanted[5] - wanted[4] + 1.0));
     }
@@ -288,7 +289,7 @@ void vtkLacunaAssembleTrackedSlices::Assemble(
 {
   const std::array<int, 6> whole = GetExtent(info, SDDP::WHOLE_EXTENT());
   const auto slices = static_cast<std::size_t>(whole[5] - whole[4]) + 1;
-  vtkLacunaPoseRequest request;
+  lacuna::PoseRequest request;
   request.Poses.Format = static_cast<lacuna::PoseFormat>(this->PoseFormat);
   request.Poses.Transform = static_cast<lacuna::PoseTransform>(this->PoseTransform);
   request.Poses.Unit = static_cast<lacuna::LengthUnit>(this->LengthUnit);
@@ -307,7 +308,7 @@ void vtkLacunaAssembleTrackedSlices::Assemble(
   request.MaximumTimeGap = this->MaximumTimeGap;
 
   const lacuna::PoseChain chain = lacuna::MakePoseChain(request.Poses);
-  const vtkLacunaPoseRecords records(table, slices, this->GetSliceTimes(stack, slices), request);
+  const lacuna::PoseRecords records(table, slices, this->GetSliceTimes(stack, slices), request);
   if (!chain.Warning.empty())
   {
     vtkWarningMacro(<< lacuna::ToPrintable(chain.Warning));
@@ -330,18 +331,18 @@ void vtkLacunaAssembleTrackedSlices::Assemble(
   }
   if (this->PoseTransform == ProbeToReference || this->PoseTransform == ReferenceToProbe)
   {
-    vtkLacunaFieldData::SetMatrices(output, ProbeToReferenceName, records.ToReference);
+    lacuna::FieldData::SetMatrices(output, ProbeToReferenceName, records.ToReference);
   }
   if (chain.HasImageToProbe)
   {
-    vtkLacunaFieldData::SetMatrices(
-      output, vtkLacunaTrackedSlices::ImageToProbeName, { chain.ImageToProbe });
+    lacuna::FieldData::SetMatrices(
+      output, lacuna::TrackedSlices::ImageToProbeName, { chain.ImageToProbe });
   }
   if (!records.Gate.empty())
   {
-    vtkLacunaFieldData::Set(output, GateName, records.Gate, 1);
+    lacuna::FieldData::Set(output, GateName, records.Gate, 1);
   }
-  vtkLacunaTrackedSlices::Write(output, poses, records.Times, records.Status, records.FrameNumbers);
+  lacuna::TrackedSlices::Write(output, poses, records.Times, records.Status, records.FrameNumbers);
   // The hash is that of all slices, also where they came one by one.
   this->Source = vtkSmartPointer<vtkImageData>::New();
   this->Source->SetExtent(output->GetExtent());
@@ -367,7 +368,7 @@ std::vector<double> vtkLacunaAssembleTrackedSlices::GetSliceTimes(
     }
     return times;
   }
-  vtkDataArray* array = stack->GetFieldData()->GetArray(vtkLacunaTrackedSlices::TimestampName);
+  vtkDataArray* array = stack->GetFieldData()->GetArray(lacuna::TrackedSlices::TimestampName);
   if (array && array->GetNumberOfComponents() == 1 &&
     array->GetNumberOfTuples() == static_cast<vtkIdType>(slices))
   {

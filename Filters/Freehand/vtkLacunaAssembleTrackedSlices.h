@@ -4,7 +4,7 @@
  * @brief   Tracked slices from an image stack and a table of poses
  *
  * Joins pictures and poses that were recorded on their own: the result is tracked slices (see
- * vtkLacunaTrackedSlices.h), as the other freehand filters take them.
+ * lacunaTrackedSlices.h), as the other freehand filters take them.
  *
  * Input 0: an image stack, column x row x slice. Its origin, spacing and direction are not used:
  * pixels are counted, and PixelSpacing says how large they are. A two-dimensional image with time
@@ -38,7 +38,10 @@
 #include <string> // for std::string
 #include <vector> // for std::vector
 
-class vtkLacunaExecution;
+namespace lacuna
+{
+class AlgorithmExecution;
+}
 class vtkTable;
 
 class VTKLACUNAFILTERSFREEHAND_EXPORT vtkLacunaAssembleTrackedSlices
@@ -192,7 +195,7 @@ protected:
   int FillInputPortInformation(int port, vtkInformation* info) override;
   void Announce(const lacuna::Ports& ports) override;
   void Ask(const lacuna::Ports& ports) override;
-  void Make(const lacuna::Ports& ports, vtkLacunaExecution& execution) override;
+  void Make(const lacuna::Ports& ports, lacuna::AlgorithmExecution& execution) override;
   std::string Parameters(int port) const override;
   std::vector<vtkDataObject*> GetOrigins(const lacuna::Ports& ports) const override;
 
@@ -201,8 +204,8 @@ private:
   void operator=(const vtkLacunaAssembleTrackedSlices&) = delete;
 
   /// Extent, coordinates and pixels of the output.
-  void CollectPixels(
-    vtkImageData* stack, vtkInformation* info, vtkImageData* output, vtkLacunaExecution& execution);
+  void CollectPixels(vtkImageData* stack, vtkInformation* info, vtkImageData* output,
+    lacuna::AlgorithmExecution& execution);
   /// Brings the input to one of its time steps.
   vtkImageData* UpdatePicture(int step);
   /// Poses and all else of the output.

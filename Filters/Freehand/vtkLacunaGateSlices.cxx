@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkLacunaGateSlices.h"
 
+#include "lacunaFieldData.h"
 #include "lacunaGateSignal.h"
 #include "lacunaParameterText.h"
+#include "lacunaPoseJudge.h"
 #include "lacunaPoseMatching.h"
 #include "lacunaSliceMotion.h"
+#include "lacunaTrackedSlices.h"
 #include "vtkDataArray.h"
 #include "vtkFieldData.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
-#include "vtkLacunaFieldData.h"
-#include "vtkLacunaPoseJudge.h"
 #include "vtkLacunaSliceStream.h"
-#include "vtkLacunaTrackedSlices.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
@@ -80,7 +80,7 @@ std::vector<double> GetKeyColumnOf(
 
 std::vector<double> GetField(vtkImageData* slices, const char* name, vtkIdType count)
 {
-  vtkDataArray* array = vtkLacunaFieldData::Get(slices, name, 1, count);
+  vtkDataArray* array = lacuna::FieldData::Get(slices, name, 1, count);
   std::vector<double> values;
   for (vtkIdType i = 0; i < count; ++i)
   {
@@ -163,7 +163,7 @@ void vtkLacunaGateSlices::Announce(const lacuna::Ports& ports)
 }
 
 //------------------------------------------------------------------------------
-void vtkLacunaGateSlices::Make(const lacuna::Ports& ports, vtkLacunaExecution&)
+void vtkLacunaGateSlices::Make(const lacuna::Ports& ports, lacuna::AlgorithmExecution&)
 {
   auto* slices = ports.GetInput<vtkImageData>();
   auto* table = ports.GetInput<vtkTable>(1);
@@ -176,11 +176,11 @@ void vtkLacunaGateSlices::Make(const lacuna::Ports& ports, vtkLacunaExecution&)
     return;
   }
   vtkDataArray* status =
-    vtkLacunaFieldData::Get(slices, vtkLacunaTrackedSlices::SliceStatusName, 1, -1);
+    lacuna::FieldData::Get(slices, lacuna::TrackedSlices::SliceStatusName, 1, -1);
   const vtkIdType count = status->GetNumberOfTuples();
   for (const int k : { slices->GetExtent()[4], slices->GetExtent()[5] })
   {
-    vtkLacunaTrackedSlices::GetSliceNumber(slices, k, count); // throws when there is none
+    lacuna::TrackedSlices::GetSliceNumber(slices, k, count); // throws when there is none
   }
   if (!(this->SpeedLimit >= 0))
   {
@@ -194,7 +194,7 @@ void vtkLacunaGateSlices::Make(const lacuna::Ports& ports, vtkLacunaExecution&)
       this->GateColumn + "' (GateColumn), or give a SpeedLimit");
   }
   vtkNew<vtkUnsignedCharArray> flags;
-  flags->SetName(vtkLacunaTrackedSlices::SliceStatusName);
+  flags->SetName(lacuna::TrackedSlices::SliceStatusName);
   for (vtkIdType i = 0; i < count; ++i)
   {
     flags->InsertNextValue(static_cast<unsigned char>(status->GetTuple1(i)));
@@ -210,7 +210,7 @@ void vtkLacunaGateSlices::Make(const lacuna::Ports& ports, vtkLacunaExecution&)
       unknown += std::isnan(gates[i]) ? 1 : 0;
       if (!range.Accepts(gates[i]))
       {
-        flags->SetValue(i, flags->GetValue(i) | vtkLacunaTrackedSlices::GatedOut);
+        flags->SetValue(i, flags->GetValue(i) | lacuna::TrackedSlices::GatedOut);
       }
     }
     if (unknown > 0)
@@ -219,7 +219,7 @@ void vtkLacunaGateSlices::Make(const lacuna::Ports& ports, vtkLacunaExecution&)
                       << " slices have no gate value and are gated out: the gate signal does "
                          "not cover them");
     }
-    vtkLacunaFieldData::Set(output, "Gate", gates, 1);
+    lacuna::FieldData::Set(output, "Gate", gates, 1);
   }
   if (this->SpeedLimit > 0)
   {
@@ -228,7 +228,7 @@ void vtkLacunaGateSlices::Make(const lacuna::Ports& ports, vtkLacunaExecution&)
     {
       if (speeds[i] > this->SpeedLimit)
       {
-        flags->SetValue(i, flags->GetValue(i) | vtkLacunaTrackedSlices::TooFast);
+        flags->SetValue(i, flags->GetValue(i) | lacuna::TrackedSlices::TooFast);
       }
     }
   }
@@ -275,7 +275,7 @@ std::vector<double> vtkLacunaGateSlices::GetGatesByTime(
 {
   constexpr std::array<lacuna::GateKind, 3> kinds{ lacuna::GateKind::Value, lacuna::GateKind::Phase,
     lacuna::GateKind::Trigger };
-  const std::vector<double> times = GetField(slices, vtkLacunaTrackedSlices::TimestampName, count);
+  const std::vector<double> times = GetField(slices, lacuna::TrackedSlices::TimestampName, count);
   std::vector<double> rows = GetKeyColumnOf(table, this->KeyColumn, { "Timestamp", "Time" });
   this->WarnOfEmptyKeys(rows);
   for (double& row : rows)
@@ -313,7 +313,7 @@ std::vector<double> vtkLacunaGateSlices::GetGatesByFrame(
     throw std::runtime_error("triggers are instants: set MatchBy to Timestamp");
   }
   const std::vector<double> frames =
-    GetField(slices, vtkLacunaTrackedSlices::FrameNumberName, count);
+    GetField(slices, lacuna::TrackedSlices::FrameNumberName, count);
   const std::vector<double> rows =
     GetKeyColumnOf(table, this->KeyColumn, { "FrameNumber", "Frame" });
   this->WarnOfEmptyKeys(rows);
@@ -353,10 +353,10 @@ std::vector<double> vtkLacunaGateSlices::GetGatesByFrame(
 std::vector<double> vtkLacunaGateSlices::GetSpeeds(
   vtkImageData* slices, const int whole[6], vtkIdType count)
 {
-  const vtkLacunaTrackedSlices tracked(slices);
-  const std::vector<double> times = GetField(slices, vtkLacunaTrackedSlices::TimestampName, count);
-  const vtkLacunaPoseJudge::Sweep sweep =
-    vtkLacunaPoseJudge::JudgeSweep(slices, tracked, whole, false);
+  const lacuna::TrackedSlices tracked(slices);
+  const std::vector<double> times = GetField(slices, lacuna::TrackedSlices::TimestampName, count);
+  const lacuna::PoseJudge::Sweep sweep =
+    lacuna::PoseJudge::JudgeSweep(slices, tracked, whole, false);
   std::vector<lacuna::Matrix4> poses;
   std::vector<std::string> problems;
   for (vtkIdType i = 0; i < count; ++i)

@@ -9,7 +9,7 @@
  * already stay. Nothing else changes: all filters that take tracked slices leave marked ones out,
  * unless they are told not to.
  *
- * Input port 0: tracked slices (see vtkLacunaTrackedSlices.h), with Timestamp (s) unless they are
+ * Input port 0: tracked slices (see lacunaTrackedSlices.h), with Timestamp (s) unless they are
  * matched by frame number. Port 1, optional: a vtkTable of a gate signal, one row for each sample.
  * Without it the gate values are a field data array of the slices, one value for each: numbers, or
  * the texts of numbers, as fields of sequence files come (an empty text is no value).
@@ -28,7 +28,7 @@
  * It is an error when columns or arrays are missing or have the wrong length, when there is nothing
  * to gate by, and for a range or period that makes no sense.
  *
- * @sa vtkLacunaTrackedSlices.h, lacunaGateSignal.h, lacunaSliceMotion.h
+ * @sa lacunaTrackedSlices.h, lacunaGateSignal.h, lacunaSliceMotion.h
  */
 #ifndef vtkLacunaGateSlices_h
 #define vtkLacunaGateSlices_h
@@ -123,7 +123,7 @@ public:
 
   ///@{
   /// Slices whose fastest corner moved by more than this many mm/s since the slice before are too
-  /// fast. Slices whose pose cannot be true (see vtkLacunaPoseJudge.h; a warning names them) have
+  /// fast. Slices whose pose cannot be true (see lacunaPoseJudge.h; a warning names them) have
   /// no speed, and the slice after one has its speed since the slice before it, as in
   /// vtkLacunaSlicePlanes. 0 = no limit. Default: 0.
   vtkSetMacro(SpeedLimit, double);
@@ -139,7 +139,7 @@ protected:
 
   int FillInputPortInformation(int port, vtkInformation* info) override;
   void Announce(const lacuna::Ports& ports) override;
-  void Make(const lacuna::Ports& ports, vtkLacunaExecution& execution) override;
+  void Make(const lacuna::Ports& ports, lacuna::AlgorithmExecution& execution) override;
   std::string Parameters(int port) const override;
 
 private:

@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkLacunaProbeCalibration.h"
 
+#include "lacunaCalibrationOutputs.h"
+#include "lacunaCalibrationPicks.h"
+#include "lacunaCalibrationReport.h"
+#include "lacunaFieldData.h"
 #include "lacunaOutputFile.h"
 #include "lacunaParameterText.h"
 #include "lacunaPrintableText.h"
+#include "lacunaTrackedSlices.h"
+#include "lacunaVolumeDirection.h"
 #include "vtkFieldData.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
-#include "vtkLacunaCalibrationOutputs.h"
-#include "vtkLacunaCalibrationPicks.h"
-#include "vtkLacunaCalibrationReport.h"
-#include "vtkLacunaFieldData.h"
-#include "vtkLacunaTrackedSlices.h"
-#include "vtkLacunaVolumeDirection.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkPolyData.h"
@@ -31,7 +31,7 @@ namespace
 {
 constexpr int SmallestPicture = 16; // pixels
 
-using Picks = std::vector<vtkLacunaCalibrationPick>;
+using Picks = std::vector<lacuna::SlicePick>;
 
 // Far outside of the pictures is a slip: too far to be told from the others as an outlier. The
 // slices may be a part of those that were picked in, and poses without pictures have any pixels.
@@ -57,14 +57,14 @@ void CheckPlaces(const Picks& picks, vtkImageData* slices)
 }
 
 // Spots of wires, or of a point, in slices without picks.
-Picks FindSpots(vtkLacunaExecution& execution, vtkImageData* slices,
-  const vtkLacunaProbePoses& poses, const std::vector<lacuna::WireRange>& ranges,
-  const Picks& picks, std::vector<std::string>& advice)
+Picks FindSpots(lacuna::AlgorithmExecution& execution, vtkImageData* slices,
+  const lacuna::ProbePoses& poses, const std::vector<lacuna::WireRange>& ranges, const Picks& picks,
+  std::vector<std::string>& advice)
 {
-  Picks found = vtkLacunaCalibrationPicks::FindSpots(execution, slices, poses, ranges, picks);
+  Picks found = lacuna::CalibrationPicks::FindSpots(execution, slices, poses, ranges, picks);
   for (const lacuna::WireRange& range : ranges)
   {
-    const auto isIn = [&range](const vtkLacunaCalibrationPick& pick)
+    const auto isIn = [&range](const lacuna::SlicePick& pick)
     { return pick.Slice >= range.First && pick.Slice <= range.Last; };
     if (std::none_of(found.begin(), found.end(), isIn) &&
       std::none_of(picks.begin(), picks.end(), isIn))
@@ -191,19 +191,19 @@ void vtkLacunaProbeCalibration::Announce(const lacuna::Ports& ports)
   {
     slices->Get(vtkDataObject::SPACING(), spacing);
   }
-  const vtkLacunaCalibrationOutputs::ErrorMapGrid grid(extent, origin, spacing);
+  const lacuna::CalibrationOutputs::ErrorMapGrid grid(extent, origin, spacing);
   vtkInformation* map = ports.GetOutputInformation(3);
   map->Set(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), grid.Extent, 6);
   map->Set(vtkDataObject::ORIGIN(), grid.Origin, 3);
   map->Set(vtkDataObject::SPACING(), grid.Spacing, 3);
-  vtkLacunaVolumeDirection::AnnounceAlongAxes(map);
+  lacuna::VolumeDirection::AnnounceAlongAxes(map);
   vtkDataObject::SetPointDataActiveScalarInfo(map, VTK_DOUBLE, 1);
 }
 
 //------------------------------------------------------------------------------
-std::vector<vtkLacunaCalibrationPick> vtkLacunaProbeCalibration::FindPicks(
-  vtkLacunaExecution& execution, vtkImageData* slices, vtkDataObject* given,
-  const vtkLacunaProbePoses& poses, std::vector<std::string>& advice)
+std::vector<lacuna::SlicePick> vtkLacunaProbeCalibration::FindPicks(
+  lacuna::AlgorithmExecution& execution, vtkImageData* slices, vtkDataObject* given,
+  const lacuna::ProbePoses& poses, std::vector<std::string>& advice)
 {
   if (this->Method == StylusPivot && given)
   {
@@ -238,21 +238,21 @@ std::vector<vtkLacunaCalibrationPick> vtkLacunaProbeCalibration::FindPicks(
   Picks picks;
   if (given)
   {
-    picks = vtkLacunaCalibrationPicks::Read(given, poses, target, ranges);
+    picks = lacuna::CalibrationPicks::Read(given, poses, target, ranges);
     CheckPlaces(picks, slices);
-    advice.push_back(vtkLacunaCalibrationPicks::DescribeFlagged(picks, poses));
+    advice.push_back(lacuna::CalibrationPicks::DescribeFlagged(picks, poses));
   }
   const bool finds = needsSpots ? this->FindSpots && !ranges.empty() : !given;
   std::string leftOut;
   if (finds)
   {
     const Picks found = this->Method == StylusPivot
-      ? vtkLacunaCalibrationPicks::GetTips(slices, poses)
+      ? lacuna::CalibrationPicks::GetTips(slices, poses)
       : needsSpots ? ::FindSpots(execution, slices, poses, ranges, picks, advice)
-                   : vtkLacunaCalibrationPicks::FindWallPicks(execution, slices, poses);
+                   : lacuna::CalibrationPicks::FindWallPicks(execution, slices, poses);
     picks.insert(picks.end(), found.begin(), found.end());
-    leftOut = vtkLacunaCalibrationPicks::DescribeLeftOut(
-      slices, poses, ranges, this->Method == StylusPivot);
+    leftOut =
+      lacuna::CalibrationPicks::DescribeLeftOut(slices, poses, ranges, this->Method == StylusPivot);
     advice.push_back(leftOut);
   }
   if (!given && picks.empty())
@@ -271,7 +271,8 @@ std::vector<vtkLacunaCalibrationPick> vtkLacunaProbeCalibration::FindPicks(
 }
 
 //------------------------------------------------------------------------------
-void vtkLacunaProbeCalibration::Make(const lacuna::Ports& ports, vtkLacunaExecution& execution)
+void vtkLacunaProbeCalibration::Make(
+  const lacuna::Ports& ports, lacuna::AlgorithmExecution& execution)
 {
   auto* slices = ports.GetInput<vtkImageData>();
   auto* given = ports.GetInput<vtkDataObject>(1);
@@ -280,10 +281,10 @@ void vtkLacunaProbeCalibration::Make(const lacuna::Ports& ports, vtkLacunaExecut
     throw std::runtime_error("the stack of slices is empty");
   }
   const bool pivot = this->Method == StylusPivot;
-  const char* array = pivot && slices->GetFieldData()->HasArray(vtkLacunaProbePoses::StylusName)
-    ? vtkLacunaProbePoses::StylusName
-    : vtkLacunaProbePoses::ArrayName;
-  const vtkLacunaProbePoses poses(slices, array);
+  const char* array = pivot && slices->GetFieldData()->HasArray(lacuna::ProbePoses::StylusName)
+    ? lacuna::ProbePoses::StylusName
+    : lacuna::ProbePoses::ArrayName;
+  const lacuna::ProbePoses poses(slices, array);
   std::vector<std::string> advice;
   const Picks picks = this->FindPicks(execution, slices, given, poses, advice);
   if (!pivot && !this->EstimateScale && this->PixelSpacing == 0)
@@ -301,12 +302,12 @@ void vtkLacunaProbeCalibration::Make(const lacuna::Ports& ports, vtkLacunaExecut
   }
   options.OutlierLimit = this->OutlierLimit;
   std::vector<lacuna::CalibrationPick> kernelPicks;
-  for (const vtkLacunaCalibrationPick& pick : picks)
+  for (const lacuna::SlicePick& pick : picks)
   {
     kernelPicks.push_back(pick.Pick);
   }
   const lacuna::ProbeCalibration found = SolveOrTell(kernelPicks, options, advice);
-  vtkLacunaCalibrationReport::Image image;
+  lacuna::CalibrationReport::Image image;
   image.Size = pivot ? lacuna::Vec2{ 0, 0 } : GetSize(slices);
   image.EstimateScale = options.EstimateScale;
   image.ExpectedRatio =
@@ -316,7 +317,7 @@ void vtkLacunaProbeCalibration::Make(const lacuna::Ports& ports, vtkLacunaExecut
     image.ExpectedError =
       std::max(image.ExpectedError, found.GetExpectedError(pivot ? lacuna::Vec2{ 0, 0 } : corner));
   }
-  const vtkLacunaCalibrationReport report(found, picks, image);
+  const lacuna::CalibrationReport report(found, picks, image);
   const std::vector<std::string> more = report.GetAdvice();
   advice.insert(advice.begin(), more.begin(), more.end());
   // Each rank has the slices calibrated; all else is there once.
@@ -334,7 +335,7 @@ void vtkLacunaProbeCalibration::Make(const lacuna::Ports& ports, vtkLacunaExecut
   if (pivot)
   {
     const lacuna::Vec3 tip = found.ImageToProbe.Column(3);
-    vtkLacunaFieldData::Set(calibrated, "StylusTip", { tip[0], tip[1], tip[2] }, 3);
+    lacuna::FieldData::Set(calibrated, "StylusTip", { tip[0], tip[1], tip[2] }, 3);
   }
   else
   {
@@ -343,21 +344,21 @@ void vtkLacunaProbeCalibration::Make(const lacuna::Ports& ports, vtkLacunaExecut
     {
       imageToReference.push_back(poses.Get(i) * found.ImageToProbe);
     }
-    vtkLacunaFieldData::SetMatrices(
-      calibrated, vtkLacunaTrackedSlices::ImageToReferenceName, imageToReference);
-    vtkLacunaFieldData::SetMatrices(
-      calibrated, vtkLacunaTrackedSlices::ImageToProbeName, { found.ImageToProbe });
+    lacuna::FieldData::SetMatrices(
+      calibrated, lacuna::TrackedSlices::ImageToReferenceName, imageToReference);
+    lacuna::FieldData::SetMatrices(
+      calibrated, lacuna::TrackedSlices::ImageToProbeName, { found.ImageToProbe });
   }
   auto* residuals = ports.GetOutput<vtkTable>(1);
   auto* picture = ports.GetOutput<vtkPolyData>(2);
   auto* map = ports.GetOutput<vtkImageData>(3);
   auto* marks = ports.GetOutput<vtkPolyData>(4);
-  vtkLacunaCalibrationOutputs::FillErrorMap(slices, found, map);
+  lacuna::CalibrationOutputs::FillErrorMap(slices, found, map);
   if (first)
   {
-    vtkLacunaCalibrationOutputs::FillTable(picks, found, residuals);
-    vtkLacunaCalibrationOutputs::FillPhantom(picks, found, picture);
-    vtkLacunaCalibrationOutputs::FillSlices(picks, found, marks);
+    lacuna::CalibrationOutputs::FillTable(picks, found, residuals);
+    lacuna::CalibrationOutputs::FillPhantom(picks, found, picture);
+    lacuna::CalibrationOutputs::FillSlices(picks, found, marks);
   }
 
   const lacuna::Vec3 angles = found.GetAngles();
@@ -372,16 +373,16 @@ void vtkLacunaProbeCalibration::Make(const lacuna::Ports& ports, vtkLacunaExecut
   {
     if (!pivot)
     {
-      vtkLacunaFieldData::Set(
+      lacuna::FieldData::Set(
         output, "PixelSpacing", { found.PixelSpacing[0], found.PixelSpacing[1] }, 2);
-      vtkLacunaFieldData::Set(output, "ImageAngles", { angles[0], angles[1], angles[2] }, 3);
+      lacuna::FieldData::Set(output, "ImageAngles", { angles[0], angles[1], angles[2] }, 3);
     }
-    vtkLacunaFieldData::Set(output, "CalibrationRms", { found.Rms }, 1);
-    vtkLacunaFieldData::Set(output, "CalibrationSpread", { found.Spread }, 1);
-    vtkLacunaFieldData::Set(output, "ExpectedError", { image.ExpectedError }, 1);
-    vtkLacunaFieldData::Set(output, "Views", { static_cast<double>(found.Views) }, 1);
-    vtkLacunaFieldData::Set(output, "Condition", { found.Condition }, 1);
-    vtkLacunaFieldData::Set(output, "RunnerUpRms", { found.RunnerUpRms }, 1);
+    lacuna::FieldData::Set(output, "CalibrationRms", { found.Rms }, 1);
+    lacuna::FieldData::Set(output, "CalibrationSpread", { found.Spread }, 1);
+    lacuna::FieldData::Set(output, "ExpectedError", { image.ExpectedError }, 1);
+    lacuna::FieldData::Set(output, "Views", { static_cast<double>(found.Views) }, 1);
+    lacuna::FieldData::Set(output, "Condition", { found.Condition }, 1);
+    lacuna::FieldData::Set(output, "RunnerUpRms", { found.RunnerUpRms }, 1);
     output->GetFieldData()->AddArray(sentences);
   }
   if (first && !this->OutputFileName.empty())
@@ -391,7 +392,7 @@ void vtkLacunaProbeCalibration::Make(const lacuna::Ports& ports, vtkLacunaExecut
     const std::string to = frame.substr(0, frame.find("ToTracker"));
     std::string refusal = report.GetRefusal();
     refusal += refusal.empty() ? "" : ". Look at Advice";
-    if (refusal.empty() && !vtkLacunaCalibrationReport::MayReplace(this->OutputFileName, from, to))
+    if (refusal.empty() && !lacuna::CalibrationReport::MayReplace(this->OutputFileName, from, to))
     {
       refusal = "it holds something else, or more, than Probe Calibration wrote for '" +
         std::string(from) + "' to '" + to + "'. Set another OutputFileName";

@@ -18,7 +18,7 @@
  * others are left out, and the result says how exact it is and which motion of the probe would make
  * it more so (lacunaProbeCalibration.h).
  *
- * Input port 0: tracked slices (vtkLacunaTrackedSlices.h) with the field data array
+ * Input port 0: tracked slices (lacunaTrackedSlices.h) with the field data array
  * ProbeToTracker (StylusPivot: StylusToTracker, or else this); the probe need not be calibrated.
  * Slices with any flag of SliceStatus are left out of what is found by itself (StylusPivot: those
  * without a pose and those gated out), and it is said how many. Port 1: the picks, a vtkTable with the columns
@@ -57,9 +57,18 @@
 #include <string>
 #include <vector>
 
-class vtkLacunaExecution;
-class vtkLacunaProbePoses;
-struct vtkLacunaCalibrationPick;
+namespace lacuna
+{
+class AlgorithmExecution;
+}
+namespace lacuna
+{
+class ProbePoses;
+}
+namespace lacuna
+{
+struct SlicePick;
+}
 
 class VTKLACUNAFILTERSFREEHAND_EXPORT vtkLacunaProbeCalibration
   : public vtkLacunaAlgorithmOf(vtkImageAlgorithm)
@@ -151,13 +160,13 @@ protected:
   int FillInputPortInformation(int port, vtkInformation* info) override;
   int FillOutputPortInformation(int port, vtkInformation* info) override;
   void Announce(const lacuna::Ports& ports) override;
-  void Make(const lacuna::Ports& ports, vtkLacunaExecution& execution) override;
+  void Make(const lacuna::Ports& ports, lacuna::AlgorithmExecution& execution) override;
   std::string Parameters(int port) const override;
 
 private:
   // Given or found; what there is to say of them is added to advice. Throws.
-  std::vector<vtkLacunaCalibrationPick> FindPicks(vtkLacunaExecution& execution,
-    vtkImageData* slices, vtkDataObject* given, const vtkLacunaProbePoses& poses,
+  std::vector<lacuna::SlicePick> FindPicks(lacuna::AlgorithmExecution& execution,
+    vtkImageData* slices, vtkDataObject* given, const lacuna::ProbePoses& poses,
     std::vector<std::string>& advice);
 
   vtkLacunaProbeCalibration(const vtkLacunaProbeCalibration&) = delete;

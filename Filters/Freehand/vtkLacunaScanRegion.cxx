@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkLacunaScanRegion.h"
 
+#include "lacunaArrayScalarType.h"
 #include "lacunaDepthRuler.h"
+#include "lacunaFieldData.h"
 #include "lacunaParameterText.h"
 #include "lacunaScanOutline.h"
 #include "lacunaScanRegion.h"
+#include "lacunaStackPixels.h"
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
 #include "vtkDataArray.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkIntArray.h"
-#include "vtkLacunaFieldData.h"
-#include "vtkLacunaScalarType.h"
-#include "vtkLacunaStackPixels.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkPoints.h"
@@ -60,22 +60,22 @@ public:
     int extent[6];
     image->GetExtent(extent);
     this->Image = image;
-    vtkDataArray* pixels = vtkLacunaStackPixels::Find(image);
-    this->IsFlipped = vtkLacunaStackPixels::IsBottomRowFirst(pixels);
+    vtkDataArray* pixels = lacuna::StackPixels::Find(image);
+    this->IsFlipped = lacuna::StackPixels::IsBottomRowFirst(pixels);
     this->Rows = { extent[2], extent[3] };
     const int slices = extent[5] - extent[4] + 1;
     const int count = std::min(MostFrames, slices);
     const std::array<int, 6> part{ extent[0], extent[1], extent[2], extent[3], 0, count - 1 };
-    this->Grey = vtkLacunaStackPixels::Allocate(pixels, part);
+    this->Grey = lacuna::StackPixels::Allocate(pixels, part);
     lacuna::SliceImage frame;
-    frame.Type = vtkLacunaScalarType::Get(this->Grey);
+    frame.Type = lacuna::ArrayScalarType::Get(this->Grey);
     frame.RowStride = frame.Width = extent[1] - extent[0] + 1;
     frame.Height = extent[3] - extent[2] + 1;
     for (int n = 0; n < count; ++n)
     {
       const int slice =
         count > 1 ? static_cast<int>(std::int64_t(n) * (slices - 1) / (count - 1)) : 0;
-      vtkLacunaStackPixels::Copy(
+      lacuna::StackPixels::Copy(
         image, extent[4] + slice, 1, this->IsFlipped, this->Rows, this->Grey, part, n);
       frame.Pixels =
         this->Grey->GetVoidPointer(vtkIdType(n) * vtkIdType(frame.Width) * frame.Height);
@@ -98,12 +98,12 @@ public:
     this->Image->GetExtent(extent);
     const std::array<int, 6> part{ extent[0], extent[1], extent[2], extent[3], 0, 0 };
     const vtkSmartPointer<vtkDataArray> grey =
-      vtkLacunaStackPixels::Allocate(vtkLacunaStackPixels::Find(this->Image), part);
+      lacuna::StackPixels::Allocate(lacuna::StackPixels::Find(this->Image), part);
     lacuna::SliceImage slice = this->Images.front();
     slice.Pixels = grey->GetVoidPointer(0);
     for (int n = 0; n < this->GetNumberOfSlices(); ++n)
     {
-      vtkLacunaStackPixels::Copy(
+      lacuna::StackPixels::Copy(
         this->Image, extent[4] + n, 1, this->IsFlipped, this->Rows, grey, part, 0);
       f(slice, n);
     }
@@ -247,7 +247,7 @@ public:
   {
     for (const auto& [name, values] : this->Numbers)
     {
-      vtkLacunaFieldData::Set(output, name, values, static_cast<int>(values.size()));
+      lacuna::FieldData::Set(output, name, values, static_cast<int>(values.size()));
     }
   }
 
@@ -322,7 +322,7 @@ int vtkLacunaScanRegion::FillOutputPortInformation(int port, vtkInformation* inf
 }
 
 //------------------------------------------------------------------------------
-void vtkLacunaScanRegion::Make(const lacuna::Ports& ports, vtkLacunaExecution& execution)
+void vtkLacunaScanRegion::Make(const lacuna::Ports& ports, lacuna::AlgorithmExecution& execution)
 {
   if (!(this->PixelAspect > 0) || !std::isfinite(this->PixelAspect))
   {

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkLacunaSliceAlgorithm.h"
 
+#include "lacunaFieldData.h"
+#include "lacunaSliceImages.h"
 #include "vtkFieldData.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
 #include "vtkIntArray.h"
-#include "vtkLacunaFieldData.h"
-#include "vtkLacunaSliceImages.h"
 #include "vtkLacunaSliceStream.h"
 #include "vtkNew.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
@@ -62,7 +62,7 @@ void vtkLacunaSliceAlgorithm::Ask(const lacuna::Ports& ports)
 }
 
 //------------------------------------------------------------------------------
-void vtkLacunaSliceAlgorithm::RecordSweeps(const std::vector<const vtkLacunaSliceImages*>& inputs,
+void vtkLacunaSliceAlgorithm::RecordSweeps(const std::vector<const lacuna::SliceImages*>& inputs,
   double maximumGap, vtkImageData* output, std::map<std::string, std::string>& warnings)
 {
   this->SweepDescription.clear();
@@ -72,9 +72,9 @@ void vtkLacunaSliceAlgorithm::RecordSweeps(const std::vector<const vtkLacunaSlic
   sweeps->SetNumberOfComponents(3);
   for (std::size_t i = 0; i < inputs.size(); ++i)
   {
-    const vtkLacunaSliceImages& input = *inputs[i];
+    const lacuna::SliceImages& input = *inputs[i];
     this->SweepDescription += (this->SweepDescription.empty() ? "" : "\n") + input.DescribeSweeps();
-    for (const vtkLacunaSliceImages::Sweep& sweep : input.Sweeps)
+    for (const lacuna::SliceImages::Sweep& sweep : input.Sweeps)
     {
       const std::array<int, 3> tuple{ static_cast<int>(i), sweep.First, sweep.Last };
       sweeps->InsertNextTypedTuple(tuple.data());
@@ -88,7 +88,7 @@ void vtkLacunaSliceAlgorithm::RecordSweeps(const std::vector<const vtkLacunaSlic
     }
   }
   output->GetFieldData()->AddArray(sweeps);
-  vtkLacunaFieldData::Set(output, "SweepGap", gaps, 1);
+  lacuna::FieldData::Set(output, "SweepGap", gaps, 1);
 }
 
 //------------------------------------------------------------------------------
@@ -106,7 +106,7 @@ void vtkLacunaSliceAlgorithm::WarnOfNews(
   }
   if (!news.empty())
   {
-    vtkWarningMacro(<< vtkLacunaSliceImages::DescribeLeftOut(news));
+    vtkWarningMacro(<< lacuna::SliceImages::DescribeLeftOut(news));
   }
   for (const auto& [fact, text] : warnings)
   {

@@ -3,7 +3,7 @@
  * @class   vtkLacunaSliceAlgorithm
  * @brief   Superclass of filters that make an image of freehand ultrasound slices
  *
- * Has the properties that say which tracked slices (see vtkLacunaTrackedSlices.h) are taken, and
+ * Has the properties that say which tracked slices (see lacunaTrackedSlices.h) are taken, and
  * which part of them. Slices whose SliceStatus is not 0 are left out, but for flags taken by
  * choice.
  *
@@ -33,7 +33,10 @@
 #include <string>
 #include <vector>
 
-struct vtkLacunaSliceImages;
+namespace lacuna
+{
+struct SliceImages;
+}
 
 class VTKLACUNAFILTERSFREEHAND_EXPORT vtkLacunaSliceAlgorithm
   : public vtkLacunaAlgorithmOf(vtkImageAlgorithm)
@@ -147,7 +150,7 @@ protected:
   /// distance between consecutive slices), one tuple for each sweep. Adds a warning where sweeps
   /// are joined because no gap is given, which states from before GapMethod have not chosen.
   /// maximumGap: mm; 0 = none.
-  void RecordSweeps(const std::vector<const vtkLacunaSliceImages*>& inputs, double maximumGap,
+  void RecordSweeps(const std::vector<const lacuna::SliceImages*>& inputs, double maximumGap,
     vtkImageData* output, std::map<std::string, std::string>& warnings);
 
   /// Gives those warnings of an update that the one before did not give. warnings: the text for

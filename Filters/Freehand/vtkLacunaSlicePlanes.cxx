@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkLacunaSlicePlanes.h"
 
+#include "lacunaFieldData.h"
 #include "lacunaItemList.h"
 #include "lacunaParameterText.h"
 #include "lacunaPropertyRange.h"
+#include "lacunaSliceImages.h"
+#include "lacunaSlicePlaneBuilder.h"
+#include "lacunaTrackedSlices.h"
 #include "vtkCellData.h"
 #include "vtkFieldData.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
-#include "vtkLacunaFieldData.h"
-#include "vtkLacunaSliceImages.h"
-#include "vtkLacunaSlicePlaneBuilder.h"
-#include "vtkLacunaTrackedSlices.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
 #include "vtkPolyData.h"
@@ -54,19 +54,19 @@ Slab GetSlab(vtkInformation* input, vtkInformation* output)
 // Whether a live source has given no slice with a pose yet, or has none for the moment.
 bool IsYetToCome(vtkImageData* stack, const Slab& slab)
 {
-  if (!vtkLacunaTrackedSlices::IsGrowing(stack))
+  if (!lacuna::TrackedSlices::IsGrowing(stack))
   {
     return false;
   }
-  if (!stack->GetFieldData()->HasArray(vtkLacunaTrackedSlices::ImageToReferenceName))
+  if (!stack->GetFieldData()->HasArray(lacuna::TrackedSlices::ImageToReferenceName))
   {
     return true;
   }
-  const vtkLacunaTrackedSlices slices(stack);
+  const lacuna::TrackedSlices slices(stack);
   bool any = false;
   for (int slice = slab.First; slice <= slab.Last; ++slice)
   {
-    any = any || !(slices.GetStatus(slice) & vtkLacunaTrackedSlices::PoseInvalid);
+    any = any || !(slices.GetStatus(slice) & lacuna::TrackedSlices::PoseInvalid);
   }
   return !any;
 }
@@ -108,7 +108,7 @@ void vtkLacunaSlicePlanes::Ask(const lacuna::Ports& ports)
 }
 
 //------------------------------------------------------------------------------
-void vtkLacunaSlicePlanes::Make(const lacuna::Ports& ports, vtkLacunaExecution& execution)
+void vtkLacunaSlicePlanes::Make(const lacuna::Ports& ports, lacuna::AlgorithmExecution& execution)
 {
   vtkInformation* in = ports.GetInputInformation();
   auto* stack = ports.GetInput<vtkImageData>();
@@ -123,7 +123,7 @@ void vtkLacunaSlicePlanes::Make(const lacuna::Ports& ports, vtkLacunaExecution& 
   }
   lacuna::RequireAtLeast(1, "Stride", this->Stride);
   lacuna::RequireAtLeast(4, "MaximumNumberOfPoints", this->MaximumNumberOfPoints);
-  vtkLacunaSlicePlaneBuilder::Options options;
+  lacuna::SlicePlaneBuilder::Options options;
   options.Stride = this->Stride;
   options.Accuracy = { this->TranslationAccuracy, this->AngularAccuracy };
   options.SpeedLimit = this->SpeedLimit;
@@ -131,11 +131,11 @@ void vtkLacunaSlicePlanes::Make(const lacuna::Ports& ports, vtkLacunaExecution& 
   options.InvalidSlices = this->InvalidSlices;
   options.KeepOutliers = this->BadPoses == vtkLacunaSliceAlgorithm::KeepOutliers;
   options.MaximumNumberOfPoints = this->MaximumNumberOfPoints;
-  vtkLacunaSlicePlaneBuilder builder(stack, whole, slab.First, slab.Last, options);
+  lacuna::SlicePlaneBuilder builder(stack, whole, slab.First, slab.Last, options);
   this->CheckRequest(builder);
   if (!builder.GetLeftOut().empty())
   {
-    vtkWarningMacro(<< vtkLacunaSliceImages::DescribeLeftOut(builder.GetLeftOut()));
+    vtkWarningMacro(<< lacuna::SliceImages::DescribeLeftOut(builder.GetLeftOut()));
   }
   builder.Build(output, execution);
   if (this->ColorBy == Speed)
@@ -148,12 +148,12 @@ void vtkLacunaSlicePlanes::Make(const lacuna::Ports& ports, vtkLacunaExecution& 
     output->GetPointData()->SetActiveScalars(
       this->ColorBy == RegistrationError ? "RegistrationError" : "Intensity");
   }
-  vtkLacunaFieldData::Set(output, "PixelStep", { static_cast<double>(builder.GetPixelStep()) }, 1);
-  vtkLacunaFieldData::Set(output, "SpeedLimit", { this->SpeedLimit }, 1);
+  lacuna::FieldData::Set(output, "PixelStep", { static_cast<double>(builder.GetPixelStep()) }, 1);
+  lacuna::FieldData::Set(output, "SpeedLimit", { this->SpeedLimit }, 1);
 }
 
 //------------------------------------------------------------------------------
-void vtkLacunaSlicePlanes::WarnOfSpeed(const vtkLacunaSlicePlaneBuilder& builder)
+void vtkLacunaSlicePlanes::WarnOfSpeed(const lacuna::SlicePlaneBuilder& builder)
 {
   const std::vector<vtkIdType> shown = builder.GetShown();
   std::vector<std::size_t> fast;
@@ -183,7 +183,7 @@ void vtkLacunaSlicePlanes::WarnOfSpeed(const vtkLacunaSlicePlaneBuilder& builder
 }
 
 //------------------------------------------------------------------------------
-void vtkLacunaSlicePlanes::CheckRequest(const vtkLacunaSlicePlaneBuilder& builder)
+void vtkLacunaSlicePlanes::CheckRequest(const lacuna::SlicePlaneBuilder& builder)
 {
   for (const double accuracy : { this->TranslationAccuracy, this->AngularAccuracy })
   {
@@ -202,7 +202,7 @@ void vtkLacunaSlicePlanes::CheckRequest(const vtkLacunaSlicePlaneBuilder& builde
   if (builder.HasBadCalibration())
   {
     const std::string text = std::string("field data array '") +
-      vtkLacunaTrackedSlices::ImageToProbeName +
+      lacuna::TrackedSlices::ImageToProbeName +
       "' has elements that are not finite or beyond all measure, so RegistrationError is not known";
     if (this->ColorBy == RegistrationError)
     {
@@ -213,13 +213,12 @@ void vtkLacunaSlicePlanes::CheckRequest(const vtkLacunaSlicePlaneBuilder& builde
   if (this->ColorBy == Speed && !builder.HasTimes())
   {
     throw std::runtime_error(std::string("ColorBy is Speed, but field data array '") +
-      vtkLacunaTrackedSlices::TimestampName +
-      "' is missing: the times of the slices are not known");
+      lacuna::TrackedSlices::TimestampName + "' is missing: the times of the slices are not known");
   }
   if (this->ColorBy == RegistrationError && !builder.HasCalibration())
   {
     throw std::runtime_error(std::string("ColorBy is RegistrationError, but field data array '") +
-      vtkLacunaTrackedSlices::ImageToProbeName +
+      lacuna::TrackedSlices::ImageToProbeName +
       "' is missing: how far the pixels are from the sensor is not known. Give the reader a "
       "CalibrationFileName, or Assemble Tracked Slices an ImageToProbe");
   }

@@ -3,7 +3,7 @@
  * @class   vtkLacunaSlicePlanes
  * @brief   Tracked slices as pictures in space
  *
- * Shows slices where they lie (see vtkLacunaTrackedSlices.h for what these are): each becomes a
+ * Shows slices where they lie (see lacunaTrackedSlices.h for what these are): each becomes a
  * lattice of quadrilaterals with its grey levels, or its outline. Coloured by speed and by expected
  * error it shows where the probe was moved too fast, and where the tracker is poor (Carr 1996,
  * ch. 2).
@@ -33,7 +33,7 @@
  * In parallel, pieces are runs of slices; they do not depend on each other, and the result is the
  * same bit by bit for any number of threads.
  *
- * @sa lacunaSliceLattice.h, lacunaSliceMotion.h, vtkLacunaPoseJudge.h
+ * @sa lacunaSliceLattice.h, lacunaSliceMotion.h, lacunaPoseJudge.h
  */
 #ifndef vtkLacunaSlicePlanes_h
 #define vtkLacunaSlicePlanes_h
@@ -45,7 +45,10 @@
 
 #include <string> // for std::string
 
-class vtkLacunaSlicePlaneBuilder;
+namespace lacuna
+{
+class SlicePlaneBuilder;
+}
 
 class VTKLACUNAFILTERSFREEHAND_EXPORT vtkLacunaSlicePlanes
   : public vtkLacunaAlgorithmOf(vtkPolyDataAlgorithm)
@@ -134,15 +137,15 @@ protected:
 
   int FillInputPortInformation(int port, vtkInformation* info) override;
   void Ask(const lacuna::Ports& ports) override;
-  void Make(const lacuna::Ports& ports, vtkLacunaExecution& execution) override;
+  void Make(const lacuna::Ports& ports, lacuna::AlgorithmExecution& execution) override;
   std::string Parameters(int port) const override;
 
 private:
   vtkLacunaSlicePlanes(const vtkLacunaSlicePlanes&) = delete;
   void operator=(const vtkLacunaSlicePlanes&) = delete;
 
-  void WarnOfSpeed(const vtkLacunaSlicePlaneBuilder& builder);
-  void CheckRequest(const vtkLacunaSlicePlaneBuilder& builder);
+  void WarnOfSpeed(const lacuna::SlicePlaneBuilder& builder);
+  void CheckRequest(const lacuna::SlicePlaneBuilder& builder);
 
   int Stride = 1;
   int ColorBy = Intensity;

@@ -1,9 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkLacunaSliceRayCaster.h"
 
+#include "lacunaArrays.h"
+#include "lacunaDepthMap.h"
+#include "lacunaFieldData.h"
 #include "lacunaMemory.h"
 #include "lacunaParameterText.h"
+#include "lacunaProposedLevel.h"
 #include "lacunaSliceFingerprint.h"
+#include "lacunaSliceImages.h"
 #include "lacunaSliceRayCaster.h"
 #include "vtkCharArray.h"
 #include "vtkDataArray.h"
@@ -12,11 +17,6 @@
 #include "vtkFloatArray.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
-#include "vtkLacunaArrays.h"
-#include "vtkLacunaDepthMap.h"
-#include "vtkLacunaFieldData.h"
-#include "vtkLacunaProposedLevel.h"
-#include "vtkLacunaSliceImages.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
@@ -46,7 +46,7 @@ bool IsSame(const lacuna::ImagePlane& a, const lacuna::ImagePlane& b)
 bool IsAnnounced(vtkInformation* info, const lacuna::ImagePlane& plane)
 {
   vtkNew<vtkInformation> now;
-  vtkLacunaDepthMap::SetInformation(now, plane);
+  lacuna::DepthMap::SetInformation(now, plane);
   const auto isSame = [&](auto* key, int count)
   { return info->Has(key) && std::equal(now->Get(key), now->Get(key) + count, info->Get(key)); };
   return isSame(SDDP::WHOLE_EXTENT(), 6) && isSame(vtkDataObject::ORIGIN(), 3) &&
@@ -75,10 +75,10 @@ public:
     {
       throw std::runtime_error("MaximumGap must be positive, or 0 for no limit");
     }
-    vtkLacunaSliceSelection selection =
-      vtkLacunaSliceSelection::Make(self, ports.GetInputInformation());
+    lacuna::SliceSelection selection =
+      lacuna::SliceSelection::Make(self, ports.GetInputInformation());
     selection.HasSweepEnds = self->GapMethod == AutomaticGap;
-    this->Images = std::make_unique<vtkLacunaSliceImages>(stack, selection);
+    this->Images = std::make_unique<lacuna::SliceImages>(stack, selection);
     if (this->GetSlices().empty() && !this->IsMoreToCome())
     {
       std::ostringstream message;
@@ -95,7 +95,7 @@ public:
       this->Images.reset(); // of a sweep that has just begun
       return;
     }
-    const vtkLacunaSliceFan fan = vtkLacunaSliceFan::Make(self);
+    const lacuna::SliceFan fan = lacuna::SliceFan::Make(self);
     if (fan.HasSector())
     {
       this->Images->ApplyFan(fan);
@@ -117,14 +117,14 @@ public:
   /// True while a replay has not reached its end, and while slices are being taken.
   bool IsMoreToCome() const { return this->Images->IsMoreToCome; }
 
-  std::unique_ptr<vtkLacunaSliceImages> Images;
+  std::unique_ptr<lacuna::SliceImages> Images;
   lacuna::ImagePlane Plane;
   double MaximumGap = 0; ///< mm along the rays; 0 = no limit
 
 private:
   void ChoosePlane(vtkLacunaSliceRayCaster* self)
   {
-    const lacuna::ViewSettings view = vtkLacunaDepthMap::GetView(self);
+    const lacuna::ViewSettings view = lacuna::DepthMap::GetView(self);
     std::vector<lacuna::Vec3> points;
     double finest = VTK_DOUBLE_MAX;
     for (const auto* slices : { &this->Images->Slices, &this->Images->Others })
@@ -226,13 +226,14 @@ void vtkLacunaSliceRayCaster::Announce(const lacuna::Ports& ports)
   }
   else
   {
-    vtkLacunaDepthMap::SetInformation(info, plan.Plane);
+    lacuna::DepthMap::SetInformation(info, plan.Plane);
   }
   info->Set(SDDP::TIME_DEPENDENT_INFORMATION(), 1);
 }
 
 //------------------------------------------------------------------------------
-void vtkLacunaSliceRayCaster::Make(const lacuna::Ports& ports, vtkLacunaExecution& execution)
+void vtkLacunaSliceRayCaster::Make(
+  const lacuna::Ports& ports, lacuna::AlgorithmExecution& execution)
 {
   vtkInformation* info = ports.GetOutputInformation();
   auto* output = ports.GetOutput<vtkImageData>();
@@ -255,7 +256,7 @@ void vtkLacunaSliceRayCaster::Make(const lacuna::Ports& ports, vtkLacunaExecutio
   int extent[6];
   info->Get(SDDP::UPDATE_EXTENT(), extent);
   output->SetExtent(extent);
-  vtkLacunaDepthMap::SetGeometry(output, plane);
+  lacuna::DepthMap::SetGeometry(output, plane);
   const vtkIdType pixels = output->GetNumberOfPoints();
   constexpr std::int64_t arrays = sizeof(double) + sizeof(char) + 3 * sizeof(float);
   lacuna::RequireMemory("this part of the depth map",
@@ -263,15 +264,15 @@ void vtkLacunaSliceRayCaster::Make(const lacuna::Ports& ports, vtkLacunaExecutio
       static_cast<double>(arrays + lacuna::SliceRayCaster::GetBytesPerPixel()),
     this->Kept->GetBytes());
   vtkNew<vtkDoubleArray> depth;
-  depth->SetName(vtkLacunaDepthMap::DepthName);
-  vtkLacunaArrays::SetNumberOfTuples(depth, pixels);
+  depth->SetName(lacuna::DepthMap::DepthName);
+  lacuna::Arrays::SetNumberOfTuples(depth, pixels);
   vtkNew<vtkCharArray> mask;
-  mask->SetName(vtkLacunaDepthMap::MaskName);
-  vtkLacunaArrays::SetNumberOfTuples(mask, pixels);
+  mask->SetName(lacuna::DepthMap::MaskName);
+  lacuna::Arrays::SetNumberOfTuples(mask, pixels);
   vtkNew<vtkFloatArray> normals;
-  normals->SetName(vtkLacunaDepthMap::NormalsName);
+  normals->SetName(lacuna::DepthMap::NormalsName);
   normals->SetNumberOfComponents(3);
-  vtkLacunaArrays::SetNumberOfTuples(normals, pixels);
+  lacuna::Arrays::SetNumberOfTuples(normals, pixels);
   if (pixels > 0)
   {
     const std::array<int, 4> part{ extent[0], extent[1], extent[2], extent[3] };
@@ -285,7 +286,7 @@ void vtkLacunaSliceRayCaster::Make(const lacuna::Ports& ports, vtkLacunaExecutio
   output->GetPointData()->SetScalars(depth);
   output->GetPointData()->AddArray(mask);
   output->GetPointData()->SetNormals(normals);
-  vtkLacunaFieldData::Set(output, vtkLacunaDepthMap::IsoValuesName, { this->IsoValue }, 1);
+  lacuna::FieldData::Set(output, lacuna::DepthMap::IsoValuesName, { this->IsoValue }, 1);
 }
 
 //------------------------------------------------------------------------------
@@ -293,7 +294,7 @@ void vtkLacunaSliceRayCaster::WarnAbout(const Plan& plan, bool hasSurface, vtkIm
 {
   std::map<std::string, std::string> warnings;
   this->RecordSweeps({ plan.Images.get() }, this->MaximumGap, output, warnings);
-  vtkLacunaFieldData::Set(output, "RayGap", { plan.MaximumGap }, 1);
+  lacuna::FieldData::Set(output, "RayGap", { plan.MaximumGap }, 1);
   const std::string preview = plan.Images->DescribePreview();
   if (!preview.empty())
   {
@@ -381,7 +382,7 @@ std::string vtkLacunaSliceRayCaster::Parameters(int) const
 //------------------------------------------------------------------------------
 double* vtkLacunaSliceRayCaster::GetProposedIsoRange()
 {
-  this->ProposedIsoRange = vtkLacunaProposedLevel::Get(this, {}, 128);
+  this->ProposedIsoRange = lacuna::ProposedLevel::Get(this, {}, 128);
   return this->ProposedIsoRange.data();
 }
 

@@ -3,7 +3,7 @@
  * @class   vtkLacunaSliceRayCaster
  * @brief   Depth map of a surface straight from freehand ultrasound slices, without a volume
  *
- * Looks at tracked slices (see vtkLacunaTrackedSlices.h) from one direction. The parallel ray of
+ * Looks at tracked slices (see lacunaTrackedSlices.h) from one direction. The parallel ray of
  * each pixel meets each slice at most once; the surface lies where these samples, from the viewer
  * on, first turn solid: the crossing of the iso-value is interpolated linearly between the nearest
  * solid sample and the sample of the same sweep just in front of it. If the two are further apart than
@@ -21,7 +21,7 @@
  * choice. Grey levels between pixels are bilinear; samples that are not finite do not exist. Slices
  * seen edge-on, at less than 1 degree from the rays, are left out and counted in a warning.
  *
- * Output: a depth map, see vtkLacunaDepthMap.h: vtkImageData of W x H x 1, x = the viewer's right,
+ * Output: a depth map, see lacunaDepthMap.h: vtkImageData of W x H x 1, x = the viewer's right,
  * y = down (ViewUp reversed and made orthogonal), z = ViewDirection. Point data: Depth (double, mm
  * along the ray, NaN where there is none; active scalars), vtkValidPointMask (char), Normals (float
  * x 3, unit, reference frame, towards the viewer; from the slopes of the depth by the rule in
@@ -139,7 +139,7 @@ protected:
   ~vtkLacunaSliceRayCaster() override;
 
   void Announce(const lacuna::Ports& ports) override;
-  void Make(const lacuna::Ports& ports, vtkLacunaExecution& execution) override;
+  void Make(const lacuna::Ports& ports, lacuna::AlgorithmExecution& execution) override;
   std::string Parameters(int port) const override;
 
 private:

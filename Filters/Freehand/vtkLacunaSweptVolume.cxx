@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkLacunaSweptVolume.h"
 
+#include "lacunaArrays.h"
+#include "lacunaFieldData.h"
 #include "lacunaMemory.h"
 #include "lacunaParameterText.h"
 #include "lacunaSweptVolume.h"
+#include "lacunaSweptVolumePlan.h"
 #include "vtkCharArray.h"
 #include "vtkDataArray.h"
 #include "vtkFieldData.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkIntArray.h"
-#include "vtkLacunaArrays.h"
-#include "vtkLacunaFieldData.h"
-#include "vtkLacunaSweptVolumePlan.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
 #include "vtkSmartPointer.h"
@@ -30,7 +30,7 @@ bool HasPoints(const int extent[6])
   return extent[0] <= extent[1] && extent[2] <= extent[3] && extent[4] <= extent[5];
 }
 
-void WriteFans(vtkImageData* output, const vtkLacunaSweptVolumeFans& fans)
+void WriteFans(vtkImageData* output, const lacuna::SweptVolumeFans& fans)
 {
   if (fans.Found.empty())
   {
@@ -40,17 +40,17 @@ void WriteFans(vtkImageData* output, const vtkLacunaSweptVolumeFans& fans)
   vtkNew<vtkIntArray> clips;
   clips->SetName("ClipRectangle");
   clips->SetNumberOfComponents(4);
-  for (const std::optional<vtkLacunaSliceFan>& found : fans.Found)
+  for (const std::optional<lacuna::SliceFan>& found : fans.Found)
   {
-    const vtkLacunaSliceFan fan = found.value_or(vtkLacunaSliceFan());
+    const lacuna::SliceFan fan = found.value_or(lacuna::SliceFan());
     origins.insert(origins.end(), fan.Sector.Origin.begin(), fan.Sector.Origin.end());
     angles.insert(angles.end(), fan.Sector.Angles.begin(), fan.Sector.Angles.end());
     radii.insert(radii.end(), fan.Sector.Radii.begin(), fan.Sector.Radii.end());
     clips->InsertNextTypedTuple(fan.Clip.data());
   }
-  vtkLacunaFieldData::Set(output, "FanOrigin", origins, 2);
-  vtkLacunaFieldData::Set(output, "FanAngles", angles, 2);
-  vtkLacunaFieldData::Set(output, "FanRadii", radii, 2);
+  lacuna::FieldData::Set(output, "FanOrigin", origins, 2);
+  lacuna::FieldData::Set(output, "FanAngles", angles, 2);
+  lacuna::FieldData::Set(output, "FanRadii", radii, 2);
   output->GetFieldData()->AddArray(clips);
 }
 
@@ -81,7 +81,7 @@ void AnnounceTimes(const lacuna::Ports& ports, int count)
 
 // Says what is odd about a volume; throws when nothing could be filled.
 std::map<std::string, std::string> CheckVolume(
-  const lacuna::SweptVolume& volume, const vtkLacunaSweptVolumePlan& plan)
+  const lacuna::SweptVolume& volume, const lacuna::SweptVolumePlan& plan)
 {
   const lacuna::SweptVolume::PairCounts& pairs = volume.GetPairCounts();
   if (pairs.All > 0 && pairs.All == pairs.Coincident && !plan.IsMoreToCome)
@@ -93,7 +93,7 @@ std::map<std::string, std::string> CheckVolume(
   {
     warnings["miss"] = "the volume is empty: " + plan.Grid.Miss;
   }
-  for (const vtkLacunaSliceImages& sweep : plan.Sweeps)
+  for (const lacuna::SliceImages& sweep : plan.Sweeps)
   {
     const std::string preview = sweep.DescribePreview();
     if (!preview.empty())
@@ -117,17 +117,17 @@ std::map<std::string, std::string> CheckVolume(
 }
 
 // Fills a volume from slices of which some are not in memory.
-std::unique_ptr<lacuna::SweptVolume> FillFromStreams(const vtkLacunaSweptVolumePlan& plan,
+std::unique_ptr<lacuna::SweptVolume> FillFromStreams(const lacuna::SweptVolumePlan& plan,
   const std::array<int, 6>& extent, lacuna::Execution& execution, double end)
 {
   auto volume = std::make_unique<lacuna::SweptVolume>(plan.Grid, extent, plan.Options);
   double all = 0;
-  for (const vtkLacunaSliceImages& sweep : plan.Sweeps)
+  for (const lacuna::SliceImages& sweep : plan.Sweeps)
   {
     all += static_cast<double>(sweep.Slices.size());
   }
   double done = 0;
-  for (const vtkLacunaSliceImages& sweep : plan.Sweeps)
+  for (const lacuna::SliceImages& sweep : plan.Sweeps)
   {
     const double begin = end * done / all;
     done += static_cast<double>(sweep.Slices.size());
@@ -141,10 +141,10 @@ std::unique_ptr<lacuna::SweptVolume> FillFromStreams(const vtkLacunaSweptVolumeP
 }
 
 // What a volume was made of, for its provenance: pixels that were read in parts have no hash.
-std::vector<vtkSmartPointer<vtkDataObject>> FindOrigins(const vtkLacunaSweptVolumePlan& plan)
+std::vector<vtkSmartPointer<vtkDataObject>> FindOrigins(const lacuna::SweptVolumePlan& plan)
 {
   std::vector<vtkSmartPointer<vtkDataObject>> origins;
-  for (const vtkLacunaSliceImages& sweep : plan.Sweeps)
+  for (const lacuna::SliceImages& sweep : plan.Sweeps)
   {
     origins.emplace_back(sweep.Stack);
     if (sweep.Stream)
@@ -161,7 +161,7 @@ vtkStandardNewMacro(vtkLacunaSweptVolume);
 
 //------------------------------------------------------------------------------
 vtkLacunaSweptVolume::vtkLacunaSweptVolume()
-  : Fans(new vtkLacunaSweptVolumeFans)
+  : Fans(new lacuna::SweptVolumeFans)
   , Growing(new lacuna::GrowingVolume)
 {
 }
@@ -179,7 +179,7 @@ vtkIdType vtkLacunaSweptVolume::GetNumberOfSlicesAdded() const
 const char* vtkLacunaSweptVolume::GetFanDescription()
 {
   this->FanDescription.clear();
-  for (const std::optional<vtkLacunaSliceFan>& fan : this->Fans->Found)
+  for (const std::optional<lacuna::SliceFan>& fan : this->Fans->Found)
   {
     this->FanDescription +=
       (this->FanDescription.empty() ? "" : "\n") + (fan ? fan->Describe() : "not seen yet");
@@ -201,7 +201,7 @@ void vtkLacunaSweptVolume::Announce(const lacuna::Ports& ports)
   this->UpdateInput(ports);
   vtkInformation* info = ports.GetOutputInformation();
   int extent[6] = { 0, -1, 0, -1, 0, -1 };
-  const vtkLacunaSweptVolumePlan plan(this, ports, *this->Fans);
+  const lacuna::SweptVolumePlan plan(this, ports, *this->Fans);
   info->Remove(vtkDataObject::DIRECTION());
   if (!plan.IsEmpty())
   {
@@ -221,12 +221,12 @@ void vtkLacunaSweptVolume::Announce(const lacuna::Ports& ports)
 }
 
 //------------------------------------------------------------------------------
-void vtkLacunaSweptVolume::Make(const lacuna::Ports& ports, vtkLacunaExecution& execution)
+void vtkLacunaSweptVolume::Make(const lacuna::Ports& ports, lacuna::AlgorithmExecution& execution)
 {
   vtkInformation* info = ports.GetOutputInformation();
   auto* output = ports.GetOutput<vtkImageData>();
   output->GetFieldData()->Initialize(); // VTK passes the slices' own
-  const vtkLacunaSweptVolumePlan plan(this, ports, *this->Fans);
+  const lacuna::SweptVolumePlan plan(this, ports, *this->Fans);
   this->Origins = FindOrigins(plan);
   if (plan.IsEmpty())
   {
@@ -263,20 +263,20 @@ void vtkLacunaSweptVolume::Make(const lacuna::Ports& ports, vtkLacunaExecution& 
   vtkSmartPointer<vtkDataArray> intensity;
   intensity.TakeReference(vtkDataArray::CreateDataArray(plan.ScalarType));
   intensity->SetName("Intensity");
-  vtkLacunaArrays::SetNumberOfTuples(intensity, size);
+  lacuna::Arrays::SetNumberOfTuples(intensity, size);
   vtkNew<vtkUnsignedIntArray> contributions;
   contributions->SetName("Contributions");
-  vtkLacunaArrays::SetNumberOfTuples(contributions, size);
+  lacuna::Arrays::SetNumberOfTuples(contributions, size);
   vtkNew<vtkCharArray> mask;
   mask->SetName("vtkValidPointMask");
-  vtkLacunaArrays::SetNumberOfTuples(mask, size);
+  lacuna::Arrays::SetNumberOfTuples(mask, size);
 
   if (HasPoints(updateExtent))
   {
     std::array<int, 6> extent;
     std::copy(updateExtent, updateExtent + 6, extent.begin());
     lacuna::GrowingVolume::Sweeps sweeps;
-    for (const vtkLacunaSliceImages& sweep : plan.Sweeps)
+    for (const lacuna::SliceImages& sweep : plan.Sweeps)
     {
       sweeps.push_back(&sweep.Slices);
     }
@@ -314,8 +314,8 @@ void vtkLacunaSweptVolume::Make(const lacuna::Ports& ports, vtkLacunaExecution& 
     }
     this->Growing->Finish();
   }
-  std::vector<const vtkLacunaSliceImages*> swept;
-  for (const vtkLacunaSliceImages& sweep : plan.Sweeps)
+  std::vector<const lacuna::SliceImages*> swept;
+  for (const lacuna::SliceImages& sweep : plan.Sweeps)
   {
     swept.push_back(&sweep);
   }

@@ -3,7 +3,7 @@
  * @class   vtkLacunaSweptVolume
  * @brief   Volume swept by freehand ultrasound slices that are not parallel
  *
- * Fills a voxel grid from tracked slices (see vtkLacunaTrackedSlices.h for what these are). A voxel
+ * Fills a voxel grid from tracked slices (see lacunaTrackedSlices.h for what these are). A voxel
  * between two consecutive slices is interpolated between the feet of its perpendiculars,
  * V = (a X2 + b X1) / (a + b), with a and b its distances from the first and the second slice and
  * X1, X2 the grey levels at the feet (Carr 1996, 4.2; lacunaSlicePair.h says what between means).
@@ -53,7 +53,10 @@
 #include <memory>
 #include <string>
 
-struct vtkLacunaSweptVolumeFans;
+namespace lacuna
+{
+struct SweptVolumeFans;
+}
 namespace lacuna
 {
 class GrowingVolume;
@@ -219,7 +222,7 @@ protected:
   bool TakesStreams() const override { return true; }
   int FillInputPortInformation(int port, vtkInformation* info) override;
   void Announce(const lacuna::Ports& ports) override;
-  void Make(const lacuna::Ports& ports, vtkLacunaExecution& execution) override;
+  void Make(const lacuna::Ports& ports, lacuna::AlgorithmExecution& execution) override;
   std::string Parameters(int port) const override;
   std::vector<vtkDataObject*> GetOrigins(const lacuna::Ports& ports) const override;
 
@@ -239,7 +242,7 @@ private:
   int FanMask = Given;
   int OutputScalarType = Input;
   int MemoryLimit = 4096;
-  std::unique_ptr<vtkLacunaSweptVolumeFans> Fans;
+  std::unique_ptr<lacuna::SweptVolumeFans> Fans;
   std::string FanDescription;
   std::unique_ptr<lacuna::GrowingVolume> Growing;
   std::vector<vtkSmartPointer<vtkDataObject>> Origins; ///< of the last volume

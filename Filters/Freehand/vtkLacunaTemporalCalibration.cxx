@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkLacunaTemporalCalibration.h"
 
+#include "lacunaCalibrationPicks.h"
+#include "lacunaFieldData.h"
 #include "lacunaParameterText.h"
 #include "lacunaTemporalCalibration.h"
+#include "lacunaTrackedSlices.h"
 #include "vtkDataArray.h"
 #include "vtkDoubleArray.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
-#include "vtkLacunaCalibrationPicks.h"
-#include "vtkLacunaFieldData.h"
-#include "vtkLacunaTrackedSlices.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkTable.h"
@@ -57,21 +57,22 @@ vtkLacunaTemporalCalibration::vtkLacunaTemporalCalibration()
 }
 
 //------------------------------------------------------------------------------
-void vtkLacunaTemporalCalibration::Make(const lacuna::Ports& ports, vtkLacunaExecution& execution)
+void vtkLacunaTemporalCalibration::Make(
+  const lacuna::Ports& ports, lacuna::AlgorithmExecution& execution)
 {
   auto* slices = ports.GetInput<vtkImageData>();
   if (slices->GetNumberOfPoints() == 0)
   {
     throw std::runtime_error("the stack of slices is empty");
   }
-  const vtkLacunaProbePoses poses(slices);
+  const lacuna::ProbePoses poses(slices);
   vtkDataArray* times =
-    vtkLacunaFieldData::Find(slices, vtkLacunaTrackedSlices::TimestampName, 1, poses.GetCount());
+    lacuna::FieldData::Find(slices, lacuna::TrackedSlices::TimestampName, 1, poses.GetCount());
   if (!times)
   {
     throw std::runtime_error("the slices have no times (field data array Timestamp, s)");
   }
-  const auto walls = vtkLacunaCalibrationPicks::FindWalls(execution, slices);
+  const auto walls = lacuna::CalibrationPicks::FindWalls(execution, slices);
   double bounds[6];
   slices->GetBounds(bounds);
   const int first = slices->GetExtent()[4];
@@ -79,7 +80,7 @@ void vtkLacunaTemporalCalibration::Make(const lacuna::Ports& ports, vtkLacunaExe
   for (std::size_t k = 0; k < walls.size(); ++k)
   {
     const vtkIdType slice =
-      vtkLacunaTrackedSlices::GetSliceNumber(slices, first + static_cast<int>(k), poses.GetCount());
+      lacuna::TrackedSlices::GetSliceNumber(slices, first + static_cast<int>(k), poses.GetCount());
     const double row = walls[k] ? GetRow(*walls[k], 0.5 * (bounds[0] + bounds[1]))
                                 : std::numeric_limits<double>::quiet_NaN();
     samples.push_back(
@@ -90,10 +91,10 @@ void vtkLacunaTemporalCalibration::Make(const lacuna::Ports& ports, vtkLacunaExe
   auto* table = ports.GetOutput<vtkTable>();
   AddColumn(table, "Lag", found.Lags);
   AddColumn(table, "Correlation", found.Correlations);
-  vtkLacunaFieldData::Set(table, "TimeOffset", { -found.Lag }, 1);
-  vtkLacunaFieldData::Set(table, "LagSpread", { found.Spread }, 1);
-  vtkLacunaFieldData::Set(table, "Correlation", { found.Correlation }, 1);
-  vtkLacunaFieldData::Set(table, "Frames", { static_cast<double>(found.Frames) }, 1);
+  lacuna::FieldData::Set(table, "TimeOffset", { -found.Lag }, 1);
+  lacuna::FieldData::Set(table, "LagSpread", { found.Spread }, 1);
+  lacuna::FieldData::Set(table, "Correlation", { found.Correlation }, 1);
+  lacuna::FieldData::Set(table, "Frames", { static_cast<double>(found.Frames) }, 1);
 }
 
 //------------------------------------------------------------------------------

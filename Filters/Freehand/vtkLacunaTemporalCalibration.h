@@ -7,7 +7,7 @@
  * (lacunaWallDetection.h), and the lag is the one at which the receiver's position explains it best
  * (lacunaTemporalCalibration.h).
  *
- * Input: tracked slices (vtkLacunaTrackedSlices.h) with the field data arrays ProbeToTracker and
+ * Input: tracked slices (lacunaTrackedSlices.h) with the field data arrays ProbeToTracker and
  * Timestamp; the probe need not be calibrated. Slices that do not show the floor, or have no pose,
  * are left out.
  *
@@ -46,7 +46,7 @@ protected:
   ~vtkLacunaTemporalCalibration() override = default;
 
   int FillInputPortInformation(int port, vtkInformation* info) override;
-  void Make(const lacuna::Ports& ports, vtkLacunaExecution& execution) override;
+  void Make(const lacuna::Ports& ports, lacuna::AlgorithmExecution& execution) override;
   std::string Parameters(int port) const override;
 
 private:

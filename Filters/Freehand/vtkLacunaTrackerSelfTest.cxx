@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkLacunaTrackerSelfTest.h"
 
+#include "lacunaArrays.h"
+#include "lacunaFieldData.h"
 #include "lacunaParameterText.h"
+#include "lacunaReceiverPairs.h"
 #include "lacunaTrackerSelfTest.h"
 #include "vtkCellArray.h"
 #include "vtkDoubleArray.h"
 #include "vtkFieldData.h"
 #include "vtkIdTypeArray.h"
 #include "vtkInformation.h"
-#include "vtkLacunaArrays.h"
-#include "vtkLacunaFieldData.h"
-#include "vtkLacunaReceiverPairs.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
@@ -44,12 +44,12 @@ void FillPoints(const Test& found, vtkPolyData* output)
   place->SetName("Place");
   record->SetName("Record");
   const auto count = static_cast<vtkIdType>(found.Samples.size());
-  vtkLacunaArrays::Reserve(points, count);
-  vtkLacunaArrays::Reserve(vertices, count, count);
+  lacuna::Arrays::Reserve(points, count);
+  lacuna::Arrays::Reserve(vertices, count, count);
   for (vtkDataArray* array : std::initializer_list<vtkDataArray*>{
          position, separation, angle, deviation, distance, place, record })
   {
-    vtkLacunaArrays::Reserve(array, count);
+    lacuna::Arrays::Reserve(array, count);
   }
   for (const Test::Sample& sample : found.Samples)
   {
@@ -93,9 +93,9 @@ void FillTable(const std::vector<Row>& rows,
 
 void AddErrors(vtkDataObject* output, const std::string& suffix, const Test::Errors& errors)
 {
-  vtkLacunaFieldData::Set(output, "Position" + suffix, { errors.Position }, 1);
-  vtkLacunaFieldData::Set(output, "Separation" + suffix, { errors.Separation }, 1);
-  vtkLacunaFieldData::Set(output, "Angle" + suffix, { errors.Angle }, 1);
+  lacuna::FieldData::Set(output, "Position" + suffix, { errors.Position }, 1);
+  lacuna::FieldData::Set(output, "Separation" + suffix, { errors.Separation }, 1);
+  lacuna::FieldData::Set(output, "Angle" + suffix, { errors.Angle }, 1);
 }
 
 void AddFigures(vtkDataObject* output, const Test& found, vtkStringArray* advice)
@@ -112,9 +112,9 @@ void AddFigures(vtkDataObject* output, const Test& found, vtkStringArray* advice
     { "OtherHemisphere", static_cast<double>(found.OtherHemisphere) } };
   for (const auto& [name, value] : figures)
   {
-    vtkLacunaFieldData::Set(output, name, { value }, 1);
+    lacuna::FieldData::Set(output, name, { value }, 1);
   }
-  vtkLacunaFieldData::SetMatrices(output, "SecondToFirst", { found.SecondToFirst });
+  lacuna::FieldData::SetMatrices(output, "SecondToFirst", { found.SecondToFirst });
   output->GetFieldData()->AddArray(advice);
 }
 }
@@ -166,17 +166,17 @@ int vtkLacunaTrackerSelfTest::FillOutputPortInformation(int port, vtkInformation
 }
 
 //------------------------------------------------------------------------------
-void vtkLacunaTrackerSelfTest::Make(const lacuna::Ports& ports, vtkLacunaExecution&)
+void vtkLacunaTrackerSelfTest::Make(const lacuna::Ports& ports, lacuna::AlgorithmExecution&)
 {
   auto* input = ports.GetInput<vtkDataObject>();
-  vtkLacunaReceiverRequest request;
+  lacuna::ReceiverRequest request;
   request.FirstReceiver = this->FirstReceiver;
   request.SecondReceiver = this->SecondReceiver;
   request.Format = static_cast<lacuna::PoseFormat>(this->PoseFormat);
   request.Unit = static_cast<lacuna::LengthUnit>(this->LengthUnit);
   request.Stations[0] = this->Stations[0];
   request.Stations[1] = this->Stations[1];
-  const vtkLacunaReceiverPairs pairs(input, request);
+  const lacuna::ReceiverPairs pairs(input, request);
   for (const std::string& warning : pairs.Warnings)
   {
     vtkWarningMacro(<< warning);

@@ -9,7 +9,7 @@
  * (Carr 1996, ch. 2.2.2.2: up to 5 mm, repeatable). See lacunaTrackerSelfTest.h.
  *
  * Input, one of:
- * - tracked slices (vtkLacunaTrackedSlices.h) with field data arrays of 16 components for both
+ * - tracked slices (lacunaTrackedSlices.h) with field data arrays of 16 components for both
  *   receivers, and SliceStatus; pictures are not looked at
  * - vtkTable with a column Station and the columns of a pose, records as the tracker sends them: a
  *   row of the first receiver is followed by one of the second
@@ -135,7 +135,7 @@ protected:
 
   int FillInputPortInformation(int port, vtkInformation* info) override;
   int FillOutputPortInformation(int port, vtkInformation* info) override;
-  void Make(const lacuna::Ports& ports, vtkLacunaExecution& execution) override;
+  void Make(const lacuna::Ports& ports, lacuna::AlgorithmExecution& execution) override;
   std::string Parameters(int port) const override;
 
 private:

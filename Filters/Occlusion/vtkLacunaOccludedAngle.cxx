@@ -1,20 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkLacunaOccludedAngle.h"
 
+#include "lacunaArrays.h"
+#include "lacunaFieldData.h"
+#include "lacunaFunctionText.h"
 #include "lacunaMemory.h"
+#include "lacunaOcclusionInput.h"
 #include "lacunaParameterText.h"
 #include "lacunaShapeGrowth.h"
+#include "lacunaVolumeDirection.h"
 #include "vtkAlgorithmOutput.h"
 #include "vtkFieldData.h"
 #include "vtkFloatArray.h"
 #include "vtkImageData.h"
 #include "vtkImplicitFunction.h"
 #include "vtkInformation.h"
-#include "vtkLacunaArrays.h"
-#include "vtkLacunaFieldData.h"
-#include "vtkLacunaFunctionText.h"
-#include "vtkLacunaOcclusionInput.h"
-#include "vtkLacunaVolumeDirection.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkPiecewiseFunction.h"
@@ -65,7 +65,7 @@ public:
     , Input(input)
     , Space(space)
     , Grid(input)
-    , Scalars(vtkLacunaOcclusionInput::FindScalars(input, self->ScalarArray))
+    , Scalars(lacuna::OcclusionInput::FindScalars(input, self->ScalarArray))
   {
     if (self->NumberOfDirections < 2 || self->NumberOfDirections > MaximumNumberOfDirections)
     {
@@ -82,14 +82,14 @@ public:
     this->Options = this->GetOptions();
     this->Field =
       std::make_unique<lacuna::AttenuationField>(this->Grid.Dimensions, this->Grid.Spacing);
-    vtkLacunaOcclusionInput::Fill(*this->Field, this->Input, this->Scalars,
+    lacuna::OcclusionInput::Fill(*this->Field, this->Input, this->Scalars,
       { self->Attenuation, self->OpacityFunction, self->Mode == BINARY }, execution);
-    vtkLacunaOcclusionInput::CutSpace(
+    lacuna::OcclusionInput::CutSpace(
       *this->Field, this->Input, this->Space, self->ReconstructionSpace);
     this->Angle->SetName("OccludedAngle");
-    vtkLacunaArrays::SetNumberOfTuples(this->Angle, this->Grid.GetSize());
+    lacuna::Arrays::SetNumberOfTuples(this->Angle, this->Grid.GetSize());
     this->Object->SetName("Object");
-    vtkLacunaArrays::SetNumberOfTuples(this->Object, this->Grid.GetSize());
+    lacuna::Arrays::SetNumberOfTuples(this->Object, this->Grid.GetSize());
   }
 
   /// The last iteration, or all of them when they are kept.
@@ -106,9 +106,9 @@ public:
       if (this->Self->KeepIterations && !last)
       {
         vtkNew<vtkFloatArray> angleCopy;
-        vtkLacunaArrays::Copy(this->Angle, angleCopy);
+        lacuna::Arrays::Copy(this->Angle, angleCopy);
         vtkNew<vtkUnsignedCharArray> objectCopy;
-        vtkLacunaArrays::Copy(this->Object, objectCopy);
+        lacuna::Arrays::Copy(this->Object, objectCopy);
         images.push_back(this->MakeImage(angleCopy, objectCopy, options, all));
       }
     };
@@ -170,9 +170,9 @@ private:
     image->CopyStructure(this->Input);
     image->GetPointData()->SetScalars(angle);
     image->GetPointData()->AddArray(object);
-    if (this->Input->GetFieldData()->HasArray(vtkLacunaVolumeDirection::ArrayName))
+    if (this->Input->GetFieldData()->HasArray(lacuna::VolumeDirection::ArrayName))
     {
-      vtkLacunaVolumeDirection::Record(image);
+      lacuna::VolumeDirection::Record(image);
     }
     const double voxel = this->Grid.GetVoxelContent();
     std::vector<double> columns[6];
@@ -189,7 +189,7 @@ private:
       "MeanAngle", "SuggestedThresholdOverPi" };
     for (int i = 0; i < 6; ++i)
     {
-      vtkLacunaFieldData::Set(image, names[i], columns[i], 1);
+      lacuna::FieldData::Set(image, names[i], columns[i], 1);
     }
     return image;
   }
@@ -197,7 +197,7 @@ private:
   vtkLacunaOccludedAngle* Self;
   vtkImageData* Input;
   vtkImageData* Space;
-  vtkLacunaOcclusionInput::Grid Grid;
+  lacuna::OcclusionInput::Grid Grid;
   vtkDataArray* Scalars;
   lacuna::GrowthOptions Options;
   std::unique_ptr<lacuna::AttenuationField> Field;
@@ -366,11 +366,11 @@ void vtkLacunaOccludedAngle::Ask(const lacuna::Ports& ports)
 }
 
 //------------------------------------------------------------------------------
-void vtkLacunaOccludedAngle::Make(const lacuna::Ports& ports, vtkLacunaExecution& execution)
+void vtkLacunaOccludedAngle::Make(const lacuna::Ports& ports, lacuna::AlgorithmExecution& execution)
 {
   auto* input = ports.GetInput<vtkImageData>();
   // Ranks that have worked together may be asked for other parts one by one.
-  const bool keep = this->KeepIterations || vtkLacunaRanks().GetNumber() > 1;
+  const bool keep = this->KeepIterations || lacuna::ControllerRanks().GetNumber() > 1;
   const std::vector<double> times = this->GetTimes();
   if (!keep || this->Made != times)
   {
@@ -427,7 +427,7 @@ std::string vtkLacunaOccludedAngle::Parameters(int) const
     parameters.Add("OpacityFunction", GetNodes(this->OpacityFunction));
   }
   return parameters
-    .Add("ReconstructionSpace", vtkLacunaFunctionText::Describe(this->ReconstructionSpace))
+    .Add("ReconstructionSpace", lacuna::FunctionText::Describe(this->ReconstructionSpace))
     .Get();
 }
 

@@ -21,7 +21,7 @@
 /// (0: none; from the histogram of the angle over the voxels that were not object before).
 ///
 /// The whole input is needed for any part of the output. The ranks of an MPI program share the
-/// directions (vtkLacunaRanks), so all of them must execute; each keeps the whole result, 5 bytes
+/// directions (lacuna::ControllerRanks), so all of them must execute; each keeps the whole result, 5 bytes
 /// per voxel. It does not depend on the number of threads or ranks. See lacunaOccludedAngle.h for the
 /// method.
 ///
@@ -176,7 +176,7 @@ protected:
   int FillInputPortInformation(int port, vtkInformation* info) override;
   void Announce(const lacuna::Ports& ports) override;
   void Ask(const lacuna::Ports& ports) override;
-  void Make(const lacuna::Ports& ports, vtkLacunaExecution& execution) override;
+  void Make(const lacuna::Ports& ports, lacuna::AlgorithmExecution& execution) override;
   std::string Parameters(int port) const override;
 
   std::string ScalarArray;

@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkLacunaOcclusionSurface.h"
 
+#include "lacunaArrays.h"
+#include "lacunaFieldData.h"
 #include "lacunaMemory.h"
+#include "lacunaOcclusionInput.h"
 #include "lacunaOcclusionSurface.h"
 #include "lacunaParameterText.h"
+#include "lacunaVolumeDirection.h"
 #include "vtkAlgorithmOutput.h"
 #include "vtkCellArray.h"
 #include "vtkCleanPolyData.h"
@@ -11,11 +15,7 @@
 #include "vtkFlyingEdges3D.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
-#include "vtkLacunaArrays.h"
-#include "vtkLacunaFieldData.h"
 #include "vtkLacunaOccludedAngle.h"
-#include "vtkLacunaOcclusionInput.h"
-#include "vtkLacunaVolumeDirection.h"
 #include "vtkMatrix3x3.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
@@ -49,11 +49,11 @@ Array* FindArray(vtkImageData* angle, const char* name)
 }
 
 // 1 where the data take half of a ray or more.
-std::vector<unsigned char> FindData(vtkImageData* image, const vtkLacunaOcclusionInput::Grid& grid,
+std::vector<unsigned char> FindData(vtkImageData* image, const lacuna::OcclusionInput::Grid& grid,
   const std::string& name, lacuna::Execution& execution)
 {
   lacuna::AttenuationField field(grid.Dimensions, grid.Spacing);
-  vtkLacunaOcclusionInput::Fill(field, image, vtkLacunaOcclusionInput::FindScalars(image, name),
+  lacuna::OcclusionInput::Fill(field, image, lacuna::OcclusionInput::FindScalars(image, name),
     { vtkLacunaOccludedAngle::LINEAR_IN_RANGE, nullptr, true }, execution);
   std::vector<unsigned char> data(grid.GetSize());
   const auto& n = grid.Dimensions;
@@ -73,7 +73,7 @@ std::vector<unsigned char> FindData(vtkImageData* image, const vtkLacunaOcclusio
 
 // The largest surface where the function is 0, in mm from the centre of the first voxel.
 vtkSmartPointer<vtkPolyData> FindContour(
-  const std::vector<float>& values, const vtkLacunaOcclusionInput::Grid& grid)
+  const std::vector<float>& values, const lacuna::OcclusionInput::Grid& grid)
 {
   constexpr int margin = lacuna::OcclusionSurface::GridMargin;
   vtkNew<vtkFloatArray> array;
@@ -131,7 +131,7 @@ struct Measures
 void ReverseTriangles(vtkPolyData* surface)
 {
   vtkNew<vtkCellArray> reversed;
-  vtkLacunaArrays::Reserve(reversed, surface->GetNumberOfCells(), 3 * surface->GetNumberOfCells());
+  lacuna::Arrays::Reserve(reversed, surface->GetNumberOfCells(), 3 * surface->GetNumberOfCells());
   vtkNew<vtkIdList> cell;
   for (vtkIdType t = 0; t < surface->GetNumberOfCells(); ++t)
   {
@@ -148,11 +148,11 @@ void SetPoints(vtkPolyData* surface, const std::vector<Point>& points,
 {
   vtkNew<vtkPoints> moved;
   moved->SetDataTypeToFloat();
-  vtkLacunaArrays::SetNumberOfPoints(moved, static_cast<vtkIdType>(points.size()));
+  lacuna::Arrays::SetNumberOfPoints(moved, static_cast<vtkIdType>(points.size()));
   vtkNew<vtkFloatArray> array;
   array->SetName("Normals");
   array->SetNumberOfComponents(3);
-  vtkLacunaArrays::SetNumberOfTuples(array, static_cast<vtkIdType>(points.size()));
+  lacuna::Arrays::SetNumberOfTuples(array, static_cast<vtkIdType>(points.size()));
   for (std::size_t i = 0; i < points.size(); ++i)
   {
     double index[3];
@@ -195,16 +195,17 @@ int vtkLacunaOcclusionSurface::FillInputPortInformation(int, vtkInformation* inf
 }
 
 //------------------------------------------------------------------------------
-void vtkLacunaOcclusionSurface::Make(const lacuna::Ports& ports, vtkLacunaExecution& execution)
+void vtkLacunaOcclusionSurface::Make(
+  const lacuna::Ports& ports, lacuna::AlgorithmExecution& execution)
 {
   vtkImageData* angle = ports.GetInput<vtkImageData>();
   vtkImageData* image = ports.GetInput<vtkImageData>(1);
-  const vtkLacunaOcclusionInput::Grid grid(angle);
+  const lacuna::OcclusionInput::Grid grid(angle);
   if (grid.Axes != 3)
   {
     throw std::runtime_error("the angle image is flat; the surface of a 3-D image is made");
   }
-  if (!vtkLacunaOcclusionInput::SamePlace(angle, image))
+  if (!lacuna::OcclusionInput::SamePlace(angle, image))
   {
     throw std::runtime_error("the data (second input) have other voxels than the angle image; "
                              "connect the image that Occluded Angle was given");
@@ -243,7 +244,7 @@ void vtkLacunaOcclusionSurface::Make(const lacuna::Ports& ports, vtkLacunaExecut
     ReverseTriangles(output);
     measures.Volume = -measures.Volume;
   }
-  vtkLacunaVolumeDirection::Remove(output);
+  lacuna::VolumeDirection::Remove(output);
   const lacuna::OcclusionSurfaceReport& report = fit.GetReport();
   const double edge = std::cbrt(grid.Spacing[0] * grid.Spacing[1] * grid.Spacing[2]);
   if (report.Residual > 0.45 * edge || report.Outliers > report.DataVoxels)
@@ -272,7 +273,7 @@ void vtkLacunaOcclusionSurface::Make(const lacuna::Ports& ports, vtkLacunaExecut
                     << "it is one, use lacuna.occlusion.closed_surface");
   }
   const auto set = [output](const char* name, double value)
-  { vtkLacunaFieldData::Set(output, name, { value }, 1); };
+  { lacuna::FieldData::Set(output, name, { value }, 1); };
   set("SurfaceVolume", measures.Volume / 1000);
   set("SurfaceArea", measures.Area);
   set("DataVoxels", static_cast<double>(report.DataVoxels));

@@ -65,7 +65,7 @@ protected:
   vtkLacunaOcclusionSurface();
   ~vtkLacunaOcclusionSurface() override = default;
   int FillInputPortInformation(int port, vtkInformation* info) override;
-  void Make(const lacuna::Ports& ports, vtkLacunaExecution& execution) override;
+  void Make(const lacuna::Ports& ports, lacuna::AlgorithmExecution& execution) override;
   std::string Parameters(int port) const override;
 
   std::string ScalarArray;

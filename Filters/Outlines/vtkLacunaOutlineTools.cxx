@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkLacunaOutlineTools.h"
 
+#include "lacunaArrays.h"
 #include "vtkCellArray.h"
 #include "vtkDataArray.h"
 #include "vtkFlyingEdges2D.h"
@@ -8,7 +9,6 @@
 #include "vtkImageData.h"
 #include "vtkImageGaussianSmooth.h"
 #include "vtkImageMedian3D.h"
-#include "vtkLacunaArrays.h"
 #include "vtkMath.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
@@ -350,7 +350,7 @@ bool vtkLacunaOutlineTools::Trace(vtkImageData* picture, double level, const dou
   }
   vtkNew<vtkImageData> real;
   real->CopyStructure(image);
-  vtkLacunaArrays::AddScalars(real, VTK_DOUBLE, "Intensity");
+  lacuna::Arrays::AddScalars(real, VTK_DOUBLE, "Intensity");
   double range[2];
   scalars->GetFiniteRange(range);
   // so far that the border is crossed at half a pixel where the picture is just at the level
@@ -436,7 +436,7 @@ int vtkLacunaOutlineTools::Snap(vtkImageData* picture, vtkPoints* points, double
   smooth->SetStandardDeviations(1, 1);
   vtkNew<vtkImageData> real;
   real->CopyStructure(picture);
-  vtkLacunaArrays::AddScalars(real, VTK_FLOAT, "Intensity");
+  lacuna::Arrays::AddScalars(real, VTK_FLOAT, "Intensity");
   for (vtkIdType n = 0; n < picture->GetNumberOfPoints(); ++n)
   {
     real->GetPointData()->GetScalars()->SetComponent(

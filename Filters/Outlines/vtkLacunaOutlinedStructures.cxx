@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkLacunaOutlinedStructures.h"
 
+#include "lacunaArrays.h"
 #include "lacunaParameterText.h"
 #include "lacunaPrintableText.h"
 #include "lacunaVector.h"
@@ -13,7 +14,6 @@
 #include "vtkFieldData.h"
 #include "vtkInformation.h"
 #include "vtkIntArray.h"
-#include "vtkLacunaArrays.h"
 #include "vtkLacunaRBFSurface.h"
 #include "vtkMath.h"
 #include "vtkNew.h"
@@ -362,7 +362,7 @@ struct Listener
 {
   std::string Error;
   std::vector<std::string> Warnings;
-  vtkLacunaExecution* Execution = nullptr;
+  lacuna::AlgorithmExecution* Execution = nullptr;
   bool IsStopped = false;
 
   static void Hear(vtkObject* caller, unsigned long event, void* self, void* data)
@@ -434,7 +434,7 @@ int vtkLacunaOutlinedStructures::FillOutputPortInformation(int port, vtkInformat
 
 //------------------------------------------------------------------------------
 std::shared_ptr<const vtkLacunaOutlinedStructures::Kept> vtkLacunaOutlinedStructures::Make(
-  const Structure& structure, vtkLacunaExecution& execution) const
+  const Structure& structure, lacuna::AlgorithmExecution& execution) const
 {
   const Lines& outlines = structure.Outlines;
   for (const auto& kept : this->Made)
@@ -545,7 +545,8 @@ std::shared_ptr<const vtkLacunaOutlinedStructures::Kept> vtkLacunaOutlinedStruct
 }
 
 //------------------------------------------------------------------------------
-void vtkLacunaOutlinedStructures::Make(const lacuna::Ports& ports, vtkLacunaExecution& execution)
+void vtkLacunaOutlinedStructures::Make(
+  const lacuna::Ports& ports, lacuna::AlgorithmExecution& execution)
 {
   auto* input = ports.GetInput<vtkPolyData>();
   for (const auto& property :
@@ -614,12 +615,12 @@ void vtkLacunaOutlinedStructures::Make(const lacuna::Ports& ports, vtkLacunaExec
       part->ShallowCopy(result->Surface);
       vtkNew<vtkIntArray> of;
       of->SetName("Structure");
-      vtkLacunaArrays::SetNumberOfTuples(of, part->GetNumberOfCells());
+      lacuna::Arrays::SetNumberOfTuples(of, part->GetNumberOfCells());
       of->FillValue(number);
       vtkNew<vtkUnsignedCharArray> color;
       color->SetName("StructureColor");
       color->SetNumberOfComponents(3);
-      vtkLacunaArrays::SetNumberOfTuples(color, part->GetNumberOfCells());
+      lacuna::Arrays::SetNumberOfTuples(color, part->GetNumberOfCells());
       for (int c = 0; c < 3; ++c)
       {
         color->FillComponent(c, structure.Color[c]);

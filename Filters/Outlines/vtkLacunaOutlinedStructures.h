@@ -40,7 +40,10 @@
 #include <memory> // for what is kept
 #include <vector> // for what is kept
 
-class vtkLacunaExecution;
+namespace lacuna
+{
+class AlgorithmExecution;
+}
 
 class VTKLACUNAFILTERSOUTLINES_EXPORT vtkLacunaOutlinedStructures
   : public vtkLacunaAlgorithmOf(vtkPolyDataAlgorithm)
@@ -76,7 +79,7 @@ protected:
   ~vtkLacunaOutlinedStructures() override;
 
   int FillOutputPortInformation(int port, vtkInformation* info) override;
-  void Make(const lacuna::Ports& ports, vtkLacunaExecution& execution) override;
+  void Make(const lacuna::Ports& ports, lacuna::AlgorithmExecution& execution) override;
   std::string Parameters(int port) const override;
 
 private:
@@ -85,7 +88,8 @@ private:
 
   struct Kept;
   /// What an earlier execution made of the same outlines, or made now.
-  std::shared_ptr<const Kept> Make(const Input& structure, vtkLacunaExecution& execution) const;
+  std::shared_ptr<const Kept> Make(
+    const Input& structure, lacuna::AlgorithmExecution& execution) const;
 
   std::vector<std::shared_ptr<const Kept>> Made; ///< of the last execution
   double RegistrationError = 0;

@@ -1,10 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkLacunaSliceOutliner.h"
 
+#include "lacunaArrays.h"
+#include "lacunaCoordinates.h"
+#include "lacunaFieldData.h"
 #include "lacunaMatrix4.h"
 #include "lacunaMemory.h"
 #include "lacunaParameterText.h"
+#include "lacunaTrackedSlices.h"
 #include "lacunaVector.h"
+#include "lacunaVolumeDirection.h"
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
 #include "vtkDataArray.h"
@@ -13,12 +18,7 @@
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkIntArray.h"
-#include "vtkLacunaArrays.h"
-#include "vtkLacunaCoordinates.h"
-#include "vtkLacunaFieldData.h"
 #include "vtkLacunaOutlineTools.h"
-#include "vtkLacunaTrackedSlices.h"
-#include "vtkLacunaVolumeDirection.h"
 #include "vtkMatrix4x4.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
@@ -58,12 +58,12 @@ public:
   {
     const auto has = [image](const char* name)
     { return image->GetFieldData()->GetAbstractArray(name) != nullptr; };
-    if (has(vtkLacunaTrackedSlices::ImageToReferenceName))
+    if (has(lacuna::TrackedSlices::ImageToReferenceName))
     {
       this->Tracked.emplace(image);
     }
-    else if (has(vtkLacunaTrackedSlices::SliceStatusName) ||
-      has(vtkLacunaTrackedSlices::FrameNumberName))
+    else if (has(lacuna::TrackedSlices::SliceStatusName) ||
+      has(lacuna::TrackedSlices::FrameNumberName))
     {
       throw std::runtime_error(
         "the slices have no field data array 'ImageToReference': the probe is not "
@@ -72,7 +72,7 @@ public:
     }
     else
     {
-      vtkLacunaVolumeDirection::Check(image);
+      lacuna::VolumeDirection::Check(image);
     }
     const int* extent = image->GetExtent();
     for (int k = extent[4]; k <= extent[5]; ++k)
@@ -109,7 +109,7 @@ public:
   {
     return !this->Tracked ||
       this->Tracked->IsUsable(
-        number, static_cast<unsigned char>(~vtkLacunaTrackedSlices::PoseInvalid));
+        number, static_cast<unsigned char>(~lacuna::TrackedSlices::PoseInvalid));
   }
 
   // (column, row, 0, 1) of a slice to mm.
@@ -145,15 +145,15 @@ public:
 
 private:
   vtkImageData* Image;
-  std::optional<vtkLacunaTrackedSlices> Tracked;
+  std::optional<lacuna::TrackedSlices> Tracked;
   std::vector<int> Numbers; // of the slices, from the extent's first on
 };
 
 // A slice where it lies in space.
-void SetPicture(vtkLacunaExecution& execution, vtkImageData* input, vtkDataArray* scalars,
+void SetPicture(lacuna::AlgorithmExecution& execution, vtkImageData* input, vtkDataArray* scalars,
   const Slices& slices, int number, vtkStructuredGrid* picture)
 {
-  vtkLacunaFieldData::Set(picture, "SliceNumber", { static_cast<double>(number) }, 1);
+  lacuna::FieldData::Set(picture, "SliceNumber", { static_cast<double>(number) }, 1);
   if (!slices.HasPlace(number))
   {
     return;
@@ -167,11 +167,11 @@ void SetPicture(vtkLacunaExecution& execution, vtkImageData* input, vtkDataArray
   vtkNew<vtkPoints> places;
   places->SetDataTypeToDouble();
   const vtkIdType pixels = static_cast<vtkIdType>(columns) * rows;
-  vtkLacunaArrays::SetNumberOfPoints(places, pixels);
+  lacuna::Arrays::SetNumberOfPoints(places, pixels);
   const auto levels =
     vtkSmartPointer<vtkDataArray>::Take(vtkDataArray::CreateDataArray(scalars->GetDataType()));
   levels->SetName(scalars->GetName() ? scalars->GetName() : "Intensity");
-  vtkLacunaArrays::SetNumberOfTuples(levels, pixels);
+  lacuna::Arrays::SetNumberOfTuples(levels, pixels);
   levels->InsertTuples(0, pixels, pixels * (k - extent[4]), scalars);
   execution.For(rows, 16,
     [&](std::int64_t begin, std::int64_t end)
@@ -190,9 +190,9 @@ void SetPicture(vtkLacunaExecution& execution, vtkImageData* input, vtkDataArray
   picture->SetPoints(places);
   picture->GetPointData()->SetScalars(levels);
   const std::array<double, 4> grid = slices.GetPixelGrid();
-  vtkLacunaFieldData::Set(picture, "PixelOrigin", { grid[0], grid[1] }, 2);
-  vtkLacunaFieldData::Set(picture, "PixelStep", { grid[2], grid[3] }, 2);
-  vtkLacunaFieldData::Set(picture, "PixelSize",
+  lacuna::FieldData::Set(picture, "PixelOrigin", { grid[0], grid[1] }, 2);
+  lacuna::FieldData::Set(picture, "PixelStep", { grid[2], grid[3] }, 2);
+  lacuna::FieldData::Set(picture, "PixelSize",
     { grid[2] * lacuna::Norm(toSpace.Column(0)), grid[3] * lacuna::Norm(toSpace.Column(1)) }, 2);
 }
 
@@ -298,7 +298,7 @@ double* vtkLacunaSliceOutliner::GetInputGrid()
   auto* image = vtkImageData::SafeDownCast(this->GetInputDataObject(0, 0));
   std::fill(std::begin(this->InputGrid), std::end(this->InputGrid), 0);
   if (image &&
-    !image->GetFieldData()->GetAbstractArray(vtkLacunaTrackedSlices::ImageToReferenceName))
+    !image->GetFieldData()->GetAbstractArray(lacuna::TrackedSlices::ImageToReferenceName))
   {
     std::copy_n(image->GetSpacing(), 3, this->InputGrid);
     std::copy_n(image->GetOrigin(), 3, this->InputGrid + 3);
@@ -378,7 +378,7 @@ void vtkLacunaSliceOutliner::Announce(const lacuna::Ports& ports)
 }
 
 //------------------------------------------------------------------------------
-void vtkLacunaSliceOutliner::Make(const lacuna::Ports& ports, vtkLacunaExecution& execution)
+void vtkLacunaSliceOutliner::Make(const lacuna::Ports& ports, lacuna::AlgorithmExecution& execution)
 {
   auto* input = ports.GetInput<vtkImageData>();
   auto* output = ports.GetOutput<vtkPolyData>();

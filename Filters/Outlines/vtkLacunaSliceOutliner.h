@@ -3,7 +3,7 @@
  * @class   vtkLacunaSliceOutliner
  * @brief   Outlines of structures, drawn in slices, in space
  *
- * Input: tracked slices (vtkLacunaTrackedSlices.h), or a volume, whose slices are its x-y planes. Outlines
+ * Input: tracked slices (lacunaTrackedSlices.h), or a volume, whose slices are its x-y planes. Outlines
  * are kept in pixels of the slice: columns, rows and slices of tracked slices are those of the contract;
  * those of a volume are voxel indices. They stay in their slices when these are placed anew.
  *
@@ -107,7 +107,7 @@ protected:
   int FillInputPortInformation(int port, vtkInformation* info) override;
   int FillOutputPortInformation(int port, vtkInformation* info) override;
   void Announce(const lacuna::Ports& ports) override;
-  void Make(const lacuna::Ports& ports, vtkLacunaExecution& execution) override;
+  void Make(const lacuna::Ports& ports, lacuna::AlgorithmExecution& execution) override;
   std::string Parameters(int port) const override;
 
 private:

@@ -1,9 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkLacunaMirror.h"
 
+#include "lacunaArrays.h"
+#include "lacunaDepthMap.h"
+#include "lacunaFieldData.h"
+#include "lacunaMirrored.h"
 #include "lacunaMirroredMap.h"
 #include "lacunaMirroredVolume.h"
 #include "lacunaParameterText.h"
+#include "lacunaVolumeDirection.h"
+#include "lacunaVolumeMask.h"
 #include "lacunaVolumeSymmetry.h"
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
@@ -16,12 +22,6 @@
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationStringKey.h"
-#include "vtkLacunaArrays.h"
-#include "vtkLacunaDepthMap.h"
-#include "vtkLacunaFieldData.h"
-#include "vtkLacunaMaskedVolume.h"
-#include "vtkLacunaMirrored.h"
-#include "vtkLacunaVolumeDirection.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
@@ -55,7 +55,7 @@ vtkSmartPointer<Array> MakeArray(
   auto array = vtkSmartPointer<Array>::New();
   array->SetName(name.c_str());
   array->SetNumberOfComponents(components);
-  vtkLacunaArrays::SetNumberOfTuples(array, static_cast<vtkIdType>(values.size()) / components);
+  lacuna::Arrays::SetNumberOfTuples(array, static_cast<vtkIdType>(values.size()) / components);
   std::copy(values.begin(), values.end(), array->GetPointer(0));
   return array;
 }
@@ -68,8 +68,8 @@ void Free(std::vector<T>& values)
 
 bool IsDepthMap(vtkImageData* image)
 {
-  return image->GetPointData()->GetArray(vtkLacunaDepthMap::DepthName) &&
-    image->GetFieldData()->GetArray(vtkLacunaDepthMap::ImageToWorldName);
+  return image->GetPointData()->GetArray(lacuna::DepthMap::DepthName) &&
+    image->GetFieldData()->GetArray(lacuna::DepthMap::ImageToWorldName);
 }
 
 // Of data that may not have come: by the name, which is all that a reader tells of them.
@@ -83,7 +83,7 @@ bool IsAnnouncedDepthMap(vtkInformation* info)
   vtkInformation* scalars = vtkDataObject::GetActiveFieldInformation(
     info, vtkDataObject::FIELD_ASSOCIATION_POINTS, vtkDataSetAttributes::SCALARS);
   const char* name = scalars ? scalars->Get(vtkDataObject::FIELD_NAME()) : nullptr;
-  return name && vtkLacunaDepthMap::DepthName == std::string(name);
+  return name && lacuna::DepthMap::DepthName == std::string(name);
 }
 
 std::string Rounded(double value)
@@ -112,7 +112,7 @@ public:
 
   template <class Data>
   static void ChoosePlane(
-    vtkLacunaMirror* self, const Data& data, Result& result, vtkLacunaExecution& execution)
+    vtkLacunaMirror* self, const Data& data, Result& result, lacuna::AlgorithmExecution& execution)
   {
     execution.SetStage(0, 0.5);
     if (self->PlaneMethod == BestSymmetry)
@@ -150,13 +150,13 @@ public:
 
   // Leaves of output, the input, the mirror image of a piece; result: is found, unless it is known.
   static void MirrorVolume(vtkLacunaMirror* self, vtkImageData* output, const int* piece,
-    bool isKnown, const lacuna::Ranks& ranks, Result& result, vtkLacunaExecution& execution)
+    bool isKnown, const lacuna::Ranks& ranks, Result& result, lacuna::AlgorithmExecution& execution)
   {
     lacuna::MaskedVolume given;
     vtkSmartPointer<vtkDataArray> keep;
     const auto prepare = [&]
     {
-      given = vtkLacunaMaskedVolume::Get(output, keep);
+      given = lacuna::VolumeMask::Get(output, keep);
       if (!isKnown)
       {
         ChoosePlane(self, given, result, execution);
@@ -189,28 +189,28 @@ public:
     image.TakeReference(vtkDataArray::CreateDataArray(scalars->GetDataType()));
     image->SetName(
       (std::string("Mirrored") + (scalars->GetName() ? scalars->GetName() : "")).c_str());
-    vtkLacunaArrays::SetNumberOfTuples(image, static_cast<vtkIdType>(mirrored.Valid.size()));
+    lacuna::Arrays::SetNumberOfTuples(image, static_cast<vtkIdType>(mirrored.Valid.size()));
     std::memcpy(image->GetVoidPointer(0), mirrored.Voxels.data(), mirrored.Voxels.size());
     Free(mirrored.Voxels); // one array at a time is there twice
     vtkPointData* points = output->GetPointData();
     points->Initialize();
     output->SetExtent(piece[0], piece[1], piece[2], piece[3], piece[4], piece[5]);
     points->SetScalars(image);
-    points->AddArray(MakeArray<vtkCharArray>(vtkLacunaDepthMap::MaskName, mirrored.Valid));
+    points->AddArray(MakeArray<vtkCharArray>(lacuna::DepthMap::MaskName, mirrored.Valid));
     Free(mirrored.Valid);
     points->AddArray(MakeArray<vtkFloatArray>(AsymmetryName, mirrored.Asymmetry));
   }
 
-  static void MirrorMap(
-    vtkLacunaMirror* self, vtkImageData* output, Result& result, vtkLacunaExecution& execution)
+  static void MirrorMap(vtkLacunaMirror* self, vtkImageData* output, Result& result,
+    lacuna::AlgorithmExecution& execution)
   {
-    const vtkLacunaDepthMap contract(output);
+    const lacuna::DepthMap contract(output);
     if (contract.IsPerspective())
     {
       throw std::runtime_error("this is a perspective depth map; only parallel ones are mirrored");
     }
     std::vector<double> depth(static_cast<std::size_t>(output->GetNumberOfPoints()));
-    vtkDataArray* mask = vtkLacunaMaskedVolume::GetMask(output);
+    vtkDataArray* mask = lacuna::VolumeMask::GetMask(output);
     for (std::size_t i = 0; i < depth.size(); ++i)
     {
       const auto p = static_cast<vtkIdType>(i);
@@ -218,11 +218,11 @@ public:
                                                         : std::numeric_limits<double>::quiet_NaN();
     }
     std::vector<float> normals;
-    if (vtkDataArray* array = output->GetPointData()->GetArray(vtkLacunaDepthMap::NormalsName))
+    if (vtkDataArray* array = output->GetPointData()->GetArray(lacuna::DepthMap::NormalsName))
     {
       if (array->GetNumberOfComponents() != 3)
       {
-        throw std::runtime_error(std::string("point array '") + vtkLacunaDepthMap::NormalsName +
+        throw std::runtime_error(std::string("point array '") + lacuna::DepthMap::NormalsName +
           "' of the depth map must have three components");
       }
       for (vtkIdType i = 0; i < 3 * output->GetNumberOfPoints(); ++i)
@@ -253,12 +253,12 @@ public:
       [](double d) { return static_cast<char>(!std::isnan(d)); });
     vtkPointData* points = output->GetPointData();
     points->Initialize();
-    points->SetScalars(MakeArray<vtkDoubleArray>(vtkLacunaDepthMap::DepthName, mirrored.Depth));
-    points->AddArray(MakeArray<vtkCharArray>(vtkLacunaDepthMap::MaskName, valid));
+    points->SetScalars(MakeArray<vtkDoubleArray>(lacuna::DepthMap::DepthName, mirrored.Depth));
+    points->AddArray(MakeArray<vtkCharArray>(lacuna::DepthMap::MaskName, valid));
     if (!mirrored.Normals.empty())
     {
       points->SetNormals(
-        MakeArray<vtkFloatArray>(vtkLacunaDepthMap::NormalsName, mirrored.Normals, 3));
+        MakeArray<vtkFloatArray>(lacuna::DepthMap::NormalsName, mirrored.Normals, 3));
     }
     points->AddArray(MakeArray<vtkDoubleArray>(AsymmetryName, mirrored.Asymmetry));
   }
@@ -319,16 +319,16 @@ public:
 
   static void AddFieldData(vtkDataObject* data, const Result& result)
   {
-    vtkLacunaFieldData::Set(data, "SymmetryScore", { result.Score }, 1);
-    vtkLacunaFieldData::Set(data, "SymmetryOverlap", { result.Overlap }, 1);
+    lacuna::FieldData::Set(data, "SymmetryScore", { result.Score }, 1);
+    lacuna::FieldData::Set(data, "SymmetryOverlap", { result.Overlap }, 1);
     if (result.IsFound)
     {
-      vtkLacunaFieldData::Set(data, "SymmetryAmbiguity", { result.Ambiguity }, 1);
+      lacuna::FieldData::Set(data, "SymmetryAmbiguity", { result.Ambiguity }, 1);
     }
-    vtkLacunaFieldData::Set(data, "AsymmetryRMS", { result.RMS }, 1);
+    lacuna::FieldData::Set(data, "AsymmetryRMS", { result.RMS }, 1);
     if (!std::isnan(result.Median))
     {
-      vtkLacunaFieldData::Set(data, "AsymmetryMedian", { result.Median }, 1);
+      lacuna::FieldData::Set(data, "AsymmetryMedian", { result.Median }, 1);
     }
   }
 };
@@ -363,7 +363,7 @@ void vtkLacunaMirror::Announce(const lacuna::Ports& ports)
 
 //------------------------------------------------------------------------------
 // Any voxel may be the image of any other, and the plane depends on all. All ranks judge together.
-void vtkLacunaMirror::Make(const lacuna::Ports& ports, vtkLacunaExecution& execution)
+void vtkLacunaMirror::Make(const lacuna::Ports& ports, lacuna::AlgorithmExecution& execution)
 {
   auto* input = ports.GetInput<vtkImageData>();
   const bool isWanted = ports.IsAsked();
@@ -382,7 +382,7 @@ void vtkLacunaMirror::Make(const lacuna::Ports& ports, vtkLacunaExecution& execu
       throw std::runtime_error("Interpolation is " + std::to_string(this->Interpolation) +
         "; it must be 0 (BSpline), 1 (Linear) or 2 (Nearest)");
     }
-    if (vtkLacunaMirrored::IsMarked(input))
+    if (lacuna::Mirrored::IsMarked(input))
     {
       throw std::runtime_error("the input is a mirror image already (field data Mirrored); mirror "
                                "the original");
@@ -446,13 +446,13 @@ void vtkLacunaMirror::Make(const lacuna::Ports& ports, vtkLacunaExecution& execu
   {
     Internals::MakeSquare(input, result.Plane, plane); // one is enough
   }
-  vtkLacunaVolumeDirection::Remove(plane);
+  lacuna::VolumeDirection::Remove(plane);
   for (vtkDataObject* data :
     { static_cast<vtkDataObject*>(mirrored), static_cast<vtkDataObject*>(plane) })
   {
     Internals::AddFieldData(data, result);
   }
-  vtkLacunaMirrored::Mark(mirrored, origin, result.Plane.Normal);
+  lacuna::Mirrored::Mark(mirrored, origin, result.Plane.Normal);
   ports.GetOutput<vtkImageData>()->ShallowCopy(mirrored);
 }
 

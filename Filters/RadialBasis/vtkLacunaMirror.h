@@ -10,7 +10,7 @@
  * for the side with the defect.
  *
  * Input: a volume or slice (active point scalars of one component, any real type and direction;
- * vtkValidPointMask is respected) or a parallel depth map (vtkLacunaDepthMap), known by its Depth and
+ * vtkValidPointMask is respected) or a parallel depth map (lacuna::DepthMap), known by its Depth and
  * ImageToWorld. How the plane is found is in lacunaVolumeSymmetry.h and lacunaMirroredMap.h.
  *
  * Output 0 on the grid of the input, of a volume: Mirrored<name> (type of the input, active scalars;
@@ -43,7 +43,10 @@
 
 #include <memory>
 
-class vtkLacunaExecution;
+namespace lacuna
+{
+class AlgorithmExecution;
+}
 
 class VTKLACUNAFILTERSRADIALBASIS_EXPORT vtkLacunaMirror
   : public vtkLacunaAlgorithmOf(vtkImageAlgorithm)
@@ -98,7 +101,7 @@ protected:
   ~vtkLacunaMirror() override;
   int FillOutputPortInformation(int port, vtkInformation* info) override;
   void Announce(const lacuna::Ports& ports) override;
-  void Make(const lacuna::Ports& ports, vtkLacunaExecution& execution) override;
+  void Make(const lacuna::Ports& ports, lacuna::AlgorithmExecution& execution) override;
   std::string Parameters(int port) const override;
 
 private:

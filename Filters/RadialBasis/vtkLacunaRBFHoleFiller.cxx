@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkLacunaRBFHoleFiller.h"
 
+#include "lacunaDefectMarks.h"
+#include "lacunaDepthMap.h"
+#include "lacunaFilledMap.h"
+#include "lacunaFunctionText.h"
 #include "lacunaHoleFill.h"
 #include "lacunaParameterText.h"
 #include "vtkDataArray.h"
@@ -8,10 +12,6 @@
 #include "vtkImageData.h"
 #include "vtkImplicitFunction.h"
 #include "vtkInformation.h"
-#include "vtkLacunaDefectMarks.h"
-#include "vtkLacunaDepthMap.h"
-#include "vtkLacunaFilledMap.h"
-#include "vtkLacunaFunctionText.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
@@ -46,7 +46,7 @@ lacuna::MapGrid GetGrid(const int* extent, const double* spacing)
 
 // Depth and Valid of the input. Returns how many pixels are flagged valid without a finite depth.
 vtkIdType ReadDepth(
-  vtkImageData* map, const vtkLacunaDepthMap& contract, lacuna::MarkedMap& input, const char* what)
+  vtkImageData* map, const lacuna::DepthMap& contract, lacuna::MarkedMap& input, const char* what)
 {
   const auto n = static_cast<vtkIdType>(input.Grid.GetSize());
   input.Depth.resize(input.Grid.GetSize());
@@ -54,10 +54,10 @@ vtkIdType ReadDepth(
   {
     input.Depth[i] = contract.GetDepth()->GetComponent(i, 0);
   }
-  input.Valid = map->GetPointData()->GetArray(vtkLacunaDepthMap::MaskName)
-    ? vtkLacunaDefectMarks::FromArray(map, vtkLacunaDepthMap::MaskName, what)
+  input.Valid = map->GetPointData()->GetArray(lacuna::DepthMap::MaskName)
+    ? lacuna::DefectMarks::FromArray(map, lacuna::DepthMap::MaskName, what)
     : MapMask(input.Grid.GetSize(), 1);
-  const bool flagged = map->GetPointData()->GetArray(vtkLacunaDepthMap::MaskName);
+  const bool flagged = map->GetPointData()->GetArray(lacuna::DepthMap::MaskName);
   vtkIdType wrong = 0;
   for (vtkIdType i = 0; i < n; ++i)
   {
@@ -92,7 +92,7 @@ MapMask FindDefect(lacuna::Execution& execution, const lacuna::MarkedMap& input)
 }
 
 // World to the map's x, y and depth, mm.
-lacuna::Matrix4 GetWorldToMap(const vtkLacunaDepthMap& contract, const lacuna::MapGrid& grid)
+lacuna::Matrix4 GetWorldToMap(const lacuna::DepthMap& contract, const lacuna::MapGrid& grid)
 {
   const lacuna::Matrix4& m = contract.GetImageToWorld();
   return lacuna::Matrix4::FromColumns((1 / grid.Spacing[0]) * m.Column(0),
@@ -133,7 +133,7 @@ lacuna::SurfaceSheet GetSheet(vtkImageData* prior, const lacuna::Matrix4& toMap)
   {
     return sheet;
   }
-  const vtkLacunaDepthMap contract(prior);
+  const lacuna::DepthMap contract(prior);
   lacuna::MarkedMap read;
   read.Grid = GetGrid(prior->GetExtent(), prior->GetSpacing());
   ReadDepth(prior, contract, read, "the prior surface");
@@ -281,55 +281,55 @@ lacuna::HoleFillOptions vtkLacunaRBFHoleFiller::GetOptions() const
 }
 
 //------------------------------------------------------------------------------
-void vtkLacunaRBFHoleFiller::MarkDefect(vtkLacunaExecution& execution, vtkImageData* map,
+void vtkLacunaRBFHoleFiller::MarkDefect(lacuna::AlgorithmExecution& execution, vtkImageData* map,
   const lacuna::Ports& ports, lacuna::MarkedMap& marked, lacuna::ParameterText& where)
 {
   auto* surface = ports.GetInput<vtkDataSet>(SurfacePort);
   auto* selection = ports.GetInput<vtkSelection>(SelectionPort);
   marked.Defect.assign(marked.Grid.GetSize(), 0);
-  where.Add("DefectRegion", vtkLacunaFunctionText::Describe(this->DefectRegion))
+  where.Add("DefectRegion", lacuna::FunctionText::Describe(this->DefectRegion))
     .Add("DefectArray", this->DefectArray);
   if (!this->SupportArray.empty())
   {
-    marked.Painted = vtkLacunaDefectMarks::FromArray(map, this->SupportArray, "SupportArray");
+    marked.Painted = lacuna::DefectMarks::FromArray(map, this->SupportArray, "SupportArray");
   }
   if (this->DefectRegion)
   {
-    vtkLacunaDefectMarks::Merge(marked.Defect,
-      vtkLacunaDefectMarks::FromRegion(
-        execution, vtkLacunaDepthMap(map), marked, this->DefectRegion));
+    lacuna::DefectMarks::Merge(marked.Defect,
+      lacuna::DefectMarks::FromRegion(
+        execution, lacuna::DepthMap(map), marked, this->DefectRegion));
   }
   if (!this->DefectArray.empty())
   {
-    vtkLacunaDefectMarks::Merge(
-      marked.Defect, vtkLacunaDefectMarks::FromArray(map, this->DefectArray, "DefectArray"));
+    lacuna::DefectMarks::Merge(
+      marked.Defect, lacuna::DefectMarks::FromArray(map, this->DefectArray, "DefectArray"));
   }
   if (surface || selection)
   {
     const MapMask selected =
-      vtkLacunaDefectMarks::FromSelection(map, marked.Grid, surface, selection);
-    where.Add("SelectedPixels", vtkLacunaDefectMarks::DescribeRuns(selected));
-    if (!surface && vtkLacunaDefectMarks::MayBeOfSurface(marked.Grid, marked.Valid, selected))
+      lacuna::DefectMarks::FromSelection(map, marked.Grid, surface, selection);
+    where.Add("SelectedPixels", lacuna::DefectMarks::DescribeRuns(selected));
+    if (!surface && lacuna::DefectMarks::MayBeOfSurface(marked.Grid, marked.Valid, selected))
     {
       vtkWarningMacro("Selection is read as points of the depth map; if it was made on a Depth Map "
                       "Surface, whose points have other numbers, set Surface to that");
     }
-    vtkLacunaDefectMarks::Merge(marked.Defect, selected);
+    lacuna::DefectMarks::Merge(marked.Defect, selected);
   }
   else if (!this->DefectRegion && this->DefectArray.empty())
   {
     marked.Defect = FindDefect(execution, marked);
   }
   where.Add("DefectPixels", std::count(marked.Defect.begin(), marked.Defect.end(), 1))
-    .Add("DefectExtent", vtkLacunaDefectMarks::GetExtent(marked.Grid, marked.Defect));
+    .Add("DefectExtent", lacuna::DefectMarks::GetExtent(marked.Grid, marked.Defect));
 }
 
 //------------------------------------------------------------------------------
 // The fit depends on the whole surroundings of the defect, whatever part is asked for.
-void vtkLacunaRBFHoleFiller::Make(const lacuna::Ports& ports, vtkLacunaExecution& execution)
+void vtkLacunaRBFHoleFiller::Make(const lacuna::Ports& ports, lacuna::AlgorithmExecution& execution)
 {
   auto* map = ports.GetInput<vtkImageData>();
-  const vtkLacunaDepthMap contract(map);
+  const lacuna::DepthMap contract(map);
   int whole[6];
   ports.GetInputInformation()->Get(SDDP::WHOLE_EXTENT(), whole);
   if (!std::equal(whole, whole + 6, map->GetExtent()))
@@ -364,7 +364,7 @@ void vtkLacunaRBFHoleFiller::Make(const lacuna::Ports& ports, vtkLacunaExecution
   if (marked == 0)
   {
     const std::string miss = this->DefectRegion
-      ? vtkLacunaDefectMarks::DescribeMiss(contract, input, this->DefectRegion)
+      ? lacuna::DefectMarks::DescribeMiss(contract, input, this->DefectRegion)
       : std::string();
     vtkWarningMacro(<< "the defect is empty, so the map is passed on as it is: "
                     << (miss.empty()
@@ -378,7 +378,7 @@ void vtkLacunaRBFHoleFiller::Make(const lacuna::Ports& ports, vtkLacunaExecution
     vtkWarningMacro(<< warning);
   }
   vtkNew<vtkImageData> filled;
-  vtkLacunaFilledMap::Make(map, contract, result, options.Kernel, marked > 0, filled);
+  lacuna::FilledMap::Make(map, contract, result, options.Kernel, marked > 0, filled);
 
   parameters.Add("Kernel", this->Kernel)
     .Add("KernelLength", this->KernelLength)

@@ -3,7 +3,7 @@
  * @class vtkLacunaRBFHoleFiller
  * @brief fills a hole in a depth map with a radial basis function fitted to the surface around it
  *
- * Inputs: a parallel depth map (vtkLacunaDepthMap; the rays of perspective maps are not parallel, so
+ * Inputs: a parallel depth map (lacuna::DepthMap; the rays of perspective maps are not parallel, so
  * depth is not a height over the map, and they are refused), and what InputPort names.
  *
  * The defect is the union of what these mark:
@@ -34,7 +34,7 @@
  * stays, its height and inclination do not count. Holes and steps of the prior are bridged, with a
  * warning; with smoothing the prior is smoothed, too.
  *
- * Output: a filled map (see vtkLacunaDepthMap.h for its arrays and field data), as large as the map
+ * Output: a filled map (see lacunaDepthMap.h for its arrays and field data), as large as the map
  * or, with an OutputMargin, larger. The rectangle of Fitted bounds defect, support and control
  * points. Other arrays and field data of the map are passed on.
  * An empty defect is no error: the output is the input with empty arrays, and a warning.
@@ -53,7 +53,10 @@
 #include <string> // for ivars
 
 class vtkImplicitFunction;
-class vtkLacunaExecution;
+namespace lacuna
+{
+class AlgorithmExecution;
+}
 namespace lacuna
 {
 class HoleFiller;
@@ -258,7 +261,7 @@ protected:
   ~vtkLacunaRBFHoleFiller() override;
   int FillInputPortInformation(int port, vtkInformation* info) override;
   void Announce(const lacuna::Ports& ports) override;
-  void Make(const lacuna::Ports& ports, vtkLacunaExecution& execution) override;
+  void Make(const lacuna::Ports& ports, lacuna::AlgorithmExecution& execution) override;
   std::string Parameters(int port) const override;
   std::vector<vtkDataObject*> GetOrigins(const lacuna::Ports& ports) const override;
 
@@ -270,8 +273,8 @@ private:
   /// Throws std::runtime_error when a choice is none of those there are.
   lacuna::HoleFillOptions GetOptions() const;
   /// Adds to where what says which pixels are marked, and how.
-  void MarkDefect(vtkLacunaExecution& execution, vtkImageData* map, const lacuna::Ports& ports,
-    lacuna::MarkedMap& marked, lacuna::ParameterText& where);
+  void MarkDefect(lacuna::AlgorithmExecution& execution, vtkImageData* map,
+    const lacuna::Ports& ports, lacuna::MarkedMap& marked, lacuna::ParameterText& where);
 
   int Kernel = ThinPlate;
   double KernelLength = 0;

@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkLacunaRBFImageWarp.h"
 
+#include "lacunaDepthMap.h"
+#include "lacunaFieldData.h"
+#include "lacunaLandmarkWarp.h"
 #include "lacunaMemory.h"
 #include "lacunaParameterText.h"
+#include "lacunaVolumeDirection.h"
+#include "lacunaWarpedPart.h"
 #include "vtkCellData.h"
 #include "vtkDataArray.h"
 #include "vtkDataSet.h"
 #include "vtkExtentTranslator.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
-#include "vtkLacunaDepthMap.h"
-#include "vtkLacunaFieldData.h"
-#include "vtkLacunaLandmarkWarp.h"
-#include "vtkLacunaVolumeDirection.h"
-#include "vtkLacunaWarpedPart.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
@@ -51,7 +51,7 @@ constexpr double FoldedLimit = 0.05;
     hint);
 }
 
-using WarpedPart = vtkLacunaWarpedPart;
+using WarpedPart = lacuna::WarpedPart;
 using Box = WarpedPart::Box;
 
 bool IsEmpty(const Box& box)
@@ -76,7 +76,7 @@ Box Join(const Box& a, const Box& b)
 }
 
 // Of an image; not below the first voxel or beyond the last one.
-Box GetBox(const int* extent, const vtkLacunaVoxelSpace& space)
+Box GetBox(const int* extent, const lacuna::VoxelSpace& space)
 {
   Box box;
   for (std::size_t c = 0; c < 3; ++c)
@@ -89,7 +89,7 @@ Box GetBox(const int* extent, const vtkLacunaVoxelSpace& space)
 
 // The voxels of the image of which a rank says whether they are folded: those that ParaView asks of
 // it, so that they are computed once, but each of one rank only.
-Box GetShare(const vtkLacunaVoxelSpace& space, const lacuna::Ranks& ranks)
+Box GetShare(const lacuna::VoxelSpace& space, const lacuna::Ranks& ranks)
 {
   int whole[6];
   std::copy_n(space.Extent, 6, whole);
@@ -119,7 +119,7 @@ struct Counts
 // Goes through the voxels of a box, of the part that the mapping has: sets those of part (may be
 // null) and adds up those in counted (may be empty).
 template <class Mapping>
-void Pass(vtkLacunaExecution& execution, Mapping& mapping, const Box& box, WarpedPart* part,
+void Pass(lacuna::AlgorithmExecution& execution, Mapping& mapping, const Box& box, WarpedPart* part,
   const Box& counted, Counts& sum)
 {
   std::atomic<std::uint64_t> folded{ 0 };
@@ -181,8 +181,8 @@ void Pass(vtkLacunaExecution& execution, Mapping& mapping, const Box& box, Warpe
 
 // Makes part (may be null) of box made, and counts what is folded in box counted; both may be empty.
 template <class Mapping>
-Counts Warp(vtkLacunaExecution& execution, Mapping& mapping, const Box& made, WarpedPart* part,
-  const Box& counted)
+Counts Warp(lacuna::AlgorithmExecution& execution, Mapping& mapping, const Box& made,
+  WarpedPart* part, const Box& counted)
 {
   const Box both = Join(made, counted);
   Counts sum;
@@ -232,7 +232,7 @@ void vtkLacunaRBFImageWarp::Announce(const lacuna::Ports& ports)
 
 //------------------------------------------------------------------------------
 // Any voxel may show any place, and each depends on all landmarks. All ranks say together what is folded.
-void vtkLacunaRBFImageWarp::Make(const lacuna::Ports& ports, vtkLacunaExecution& execution)
+void vtkLacunaRBFImageWarp::Make(const lacuna::Ports& ports, lacuna::AlgorithmExecution& execution)
 {
   const lacuna::Ranks& ranks = ports.Ranks;
   auto* image = ports.GetInput<vtkImageData>();
@@ -241,18 +241,18 @@ void vtkLacunaRBFImageWarp::Make(const lacuna::Ports& ports, vtkLacunaExecution&
   auto* output = ports.GetOutput<vtkImageData>();
   const bool wanted = ports.IsAsked();
   vtkDataArray* scalars = nullptr;
-  std::optional<vtkLacunaVoxelSpace> found;
+  std::optional<lacuna::VoxelSpace> found;
   std::vector<std::array<double, 3>> from;
   std::vector<std::array<double, 3>> to;
   const auto prepare = [&]
   {
-    vtkLacunaVolumeDirection::Check(image);
+    lacuna::VolumeDirection::Check(image);
     scalars = image->GetPointData()->GetScalars();
     if (!scalars)
     {
       throw std::runtime_error("the image has no active point scalars");
     }
-    if (scalars->GetName() && !std::strcmp(scalars->GetName(), vtkLacunaDepthMap::MaskName))
+    if (scalars->GetName() && !std::strcmp(scalars->GetName(), lacuna::DepthMap::MaskName))
     {
       throw std::runtime_error("the image's active scalars are its vtkValidPointMask; choose the "
                                "array that shall be warped as the active one");
@@ -284,7 +284,7 @@ void vtkLacunaRBFImageWarp::Make(const lacuna::Ports& ports, vtkLacunaExecution&
     to = found->GetPoints(targets);
   };
   ranks.Together(prepare); // what is wrong on one rank only may not keep the others waiting
-  const vtkLacunaVoxelSpace& space = *found;
+  const lacuna::VoxelSpace& space = *found;
   lacuna::RadialBasisOptions options;
   options.Kernel = static_cast<lacuna::RadialKernel>(this->Kernel);
   options.Smoothing = this->Smoothing;
@@ -344,10 +344,10 @@ void vtkLacunaRBFImageWarp::Make(const lacuna::Ports& ports, vtkLacunaExecution&
     switch (space.Axes.size())
     {
       case 3:
-        run(vtkLacunaLandmarkWarp<3>(execution, space, from, to, options, this->Accuracy));
+        run(lacuna::LandmarkWarp<3>(execution, space, from, to, options, this->Accuracy));
         break;
       case 2:
-        run(vtkLacunaLandmarkWarp<2>(execution, space, from, to, options, this->Accuracy));
+        run(lacuna::LandmarkWarp<2>(execution, space, from, to, options, this->Accuracy));
         break;
       default:
         throw std::runtime_error("the image is but a row of voxels; warps are two- or "
@@ -408,9 +408,9 @@ void vtkLacunaRBFImageWarp::Make(const lacuna::Ports& ports, vtkLacunaExecution&
   output->SetExtent(extent);
   output->GetPointData()->SetScalars(part->GetWarped());
   output->GetPointData()->AddArray(part->GetValid());
-  vtkLacunaFieldData::Set(output, "NodeCount", { static_cast<double>(report.NodeCount) }, 1);
-  vtkLacunaFieldData::Set(output, "Residual", { report.Residual }, 1);
-  vtkLacunaFieldData::Set(output, "FoldedFraction", { this->FoldedFraction }, 1);
+  lacuna::FieldData::Set(output, "NodeCount", { static_cast<double>(report.NodeCount) }, 1);
+  lacuna::FieldData::Set(output, "Residual", { report.Residual }, 1);
+  lacuna::FieldData::Set(output, "FoldedFraction", { this->FoldedFraction }, 1);
 }
 
 //------------------------------------------------------------------------------

@@ -45,7 +45,10 @@
 #include <vector>
 
 class vtkAlgorithmOutput;
-class vtkLacunaExecution;
+namespace lacuna
+{
+class AlgorithmExecution;
+}
 
 class VTKLACUNAFILTERSRADIALBASIS_EXPORT vtkLacunaRBFImageWarp
   : public vtkLacunaAlgorithmOf(vtkImageAlgorithm)
@@ -113,7 +116,7 @@ protected:
   ~vtkLacunaRBFImageWarp() override;
   int FillInputPortInformation(int port, vtkInformation* info) override;
   void Announce(const lacuna::Ports& ports) override;
-  void Make(const lacuna::Ports& ports, vtkLacunaExecution& execution) override;
+  void Make(const lacuna::Ports& ports, lacuna::AlgorithmExecution& execution) override;
   std::string Parameters(int port) const override;
 
 private:

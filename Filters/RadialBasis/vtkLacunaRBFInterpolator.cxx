@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkLacunaRBFInterpolator.h"
 
+#include "lacunaArrayName.h"
+#include "lacunaArrays.h"
 #include "lacunaCenterReduction.h"
+#include "lacunaFieldData.h"
 #include "lacunaMemory.h"
 #include "lacunaParameterText.h"
 #include "lacunaRadialBasis.h"
+#include "lacunaVolumeDirection.h"
 #include "vtkAlgorithmOutput.h"
 #include "vtkDataArray.h"
 #include "vtkDataSet.h"
@@ -12,10 +16,6 @@
 #include "vtkFieldData.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
-#include "vtkLacunaArrayName.h"
-#include "vtkLacunaArrays.h"
-#include "vtkLacunaFieldData.h"
-#include "vtkLacunaVolumeDirection.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
@@ -142,7 +142,7 @@ vtkDataArray* FindArray(vtkDataSet* points, const std::string& name, const char*
 
 // Through all nodes, or with a tolerance above 0 through few of them.
 template <int Dimension>
-lacuna::ReducedCenters<Dimension> Fit(vtkLacunaExecution& execution,
+lacuna::ReducedCenters<Dimension> Fit(lacuna::AlgorithmExecution& execution,
   const std::vector<std::array<double, Dimension>>& nodes,
   const std::vector<std::vector<double>>& values, const lacuna::RadialBasisOptions& options,
   double tolerance)
@@ -160,7 +160,7 @@ lacuna::ReducedCenters<Dimension> Fit(vtkLacunaExecution& execution,
 }
 
 template <int Dimension>
-void Interpolate(vtkLacunaExecution& execution, vtkDataSet* points, vtkDataArray* array,
+void Interpolate(lacuna::AlgorithmExecution& execution, vtkDataSet* points, vtkDataArray* array,
   const OutputGrid& to, const int piece[6], const lacuna::RadialBasisOptions& options,
   double tolerance, vtkDoubleArray* image, vtkImageData* output)
 {
@@ -202,7 +202,7 @@ void Interpolate(vtkLacunaExecution& execution, vtkDataSet* points, vtkDataArray
     count *= range[1] - range[0];
   }
   image->SetNumberOfComponents(components);
-  vtkLacunaArrays::SetNumberOfTuples(image, count);
+  lacuna::Arrays::SetNumberOfTuples(image, count);
   std::vector<double> one(components > 1 ? count : 0);
   for (int k = 0; k < components; ++k)
   {
@@ -215,24 +215,24 @@ void Interpolate(vtkLacunaExecution& execution, vtkDataSet* points, vtkDataArray
     }
   }
   const lacuna::RadialBasisReport& report = function.GetReport();
-  vtkLacunaFieldData::Set(output, "NodeCount", { static_cast<double>(fit.NodeCount) }, 1);
-  vtkLacunaFieldData::Set(output, "CenterCount", { static_cast<double>(report.NodeCount) }, 1);
-  vtkLacunaFieldData::Set(output, "Residual", { fit.Residual }, 1);
-  vtkLacunaFieldData::Set(output, "ConditionEstimate", { report.ConditionEstimate }, 1);
-  vtkLacunaFieldData::Set(output, "Iterations", { static_cast<double>(report.Iterations) }, 1);
+  lacuna::FieldData::Set(output, "NodeCount", { static_cast<double>(fit.NodeCount) }, 1);
+  lacuna::FieldData::Set(output, "CenterCount", { static_cast<double>(report.NodeCount) }, 1);
+  lacuna::FieldData::Set(output, "Residual", { fit.Residual }, 1);
+  lacuna::FieldData::Set(output, "ConditionEstimate", { report.ConditionEstimate }, 1);
+  lacuna::FieldData::Set(output, "Iterations", { static_cast<double>(report.Iterations) }, 1);
 }
 }
 
 //------------------------------------------------------------------------------
 void vtkLacunaRBFInterpolator::SetScalarArray(const char* name)
 {
-  vtkLacunaSetArrayName(this, this->ScalarArray, name);
+  lacuna::SetArrayName(this, this->ScalarArray, name);
 }
 
 //------------------------------------------------------------------------------
 void vtkLacunaRBFInterpolator::SetErrorArray(const char* name)
 {
-  vtkLacunaSetArrayName(this, this->ErrorArray, name);
+  lacuna::SetArrayName(this, this->ErrorArray, name);
 }
 
 //------------------------------------------------------------------------------
@@ -250,7 +250,7 @@ void vtkLacunaRBFInterpolator::Announce(const lacuna::Ports& ports)
   auto* points = ports.GetInput<vtkDataSet>();
   vtkInformation* info = ports.GetOutputInformation();
   int extent[6] = { 0, -1, 0, -1, 0, -1 };
-  vtkLacunaVolumeDirection::AnnounceAlongAxes(info);
+  lacuna::VolumeDirection::AnnounceAlongAxes(info);
   if (points && points->GetNumberOfPoints() > 0)
   {
     const OutputGrid to(points, this->OutputSpacing, this->OutputBounds);
@@ -266,12 +266,13 @@ void vtkLacunaRBFInterpolator::Announce(const lacuna::Ports& ports)
 }
 
 //------------------------------------------------------------------------------
-void vtkLacunaRBFInterpolator::Make(const lacuna::Ports& ports, vtkLacunaExecution& execution)
+void vtkLacunaRBFInterpolator::Make(
+  const lacuna::Ports& ports, lacuna::AlgorithmExecution& execution)
 {
   auto* points = ports.GetInput<vtkDataSet>(); // each value of the image depends on all of them
   auto* output = ports.GetOutput<vtkImageData>();
   output->GetFieldData()->Initialize(); // VTK passes the points' own
-  vtkLacunaVolumeDirection::Check(points);
+  lacuna::VolumeDirection::Check(points);
   if (this->Kernel < ThinPlate || this->Kernel > Multiquadric)
   {
     throw std::runtime_error("Kernel is " + std::to_string(this->Kernel) +

@@ -146,7 +146,7 @@ protected:
   ~vtkLacunaRBFInterpolator() override = default;
   int FillInputPortInformation(int port, vtkInformation* info) override;
   void Announce(const lacuna::Ports& ports) override;
-  void Make(const lacuna::Ports& ports, vtkLacunaExecution& execution) override;
+  void Make(const lacuna::Ports& ports, lacuna::AlgorithmExecution& execution) override;
   std::string Parameters(int port) const override;
 
 private:

@@ -1,24 +1,24 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkLacunaRBFSurface.h"
 
+#include "lacunaArrayName.h"
+#include "lacunaArrays.h"
 #include "lacunaBlendedSpline.h"
+#include "lacunaFieldData.h"
 #include "lacunaMemory.h"
 #include "lacunaOutlines.h"
 #include "lacunaParameterText.h"
 #include "lacunaPointNormals.h"
 #include "lacunaSurfaceFollower.h"
+#include "lacunaSurfacePoints.h"
+#include "lacunaSurfacePrior.h"
 #include "lacunaSurfaceSpline.h"
+#include "lacunaVolumeDirection.h"
 #include "vtkDataSet.h"
 #include "vtkFloatArray.h"
 #include "vtkImageData.h"
 #include "vtkImplicitFunction.h"
 #include "vtkInformation.h"
-#include "vtkLacunaArrayName.h"
-#include "vtkLacunaArrays.h"
-#include "vtkLacunaFieldData.h"
-#include "vtkLacunaSurfacePoints.h"
-#include "vtkLacunaSurfacePrior.h"
-#include "vtkLacunaVolumeDirection.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
@@ -84,7 +84,7 @@ vtkFloatArray* AddArray(vtkPolyData* output, const char* name, vtkIdType tuples)
 {
   vtkNew<vtkFloatArray> array;
   array->SetName(name);
-  vtkLacunaArrays::SetNumberOfTuples(array, tuples);
+  lacuna::Arrays::SetNumberOfTuples(array, tuples);
   output->GetPointData()->AddArray(array);
   return array;
 }
@@ -94,18 +94,18 @@ void SetSurface(vtkPolyData* output, const lacuna::FollowedSurface& followed)
   const auto n = static_cast<vtkIdType>(followed.Surface.Points.size());
   vtkNew<vtkPoints> points;
   points->SetDataTypeToFloat();
-  vtkLacunaArrays::SetNumberOfPoints(points, n);
+  lacuna::Arrays::SetNumberOfPoints(points, n);
   vtkNew<vtkFloatArray> normals;
   normals->SetName("Normals");
   normals->SetNumberOfComponents(3);
-  vtkLacunaArrays::SetNumberOfTuples(normals, n);
+  lacuna::Arrays::SetNumberOfTuples(normals, n);
   for (vtkIdType i = 0; i < n; ++i)
   {
     points->SetPoint(i, followed.Surface.Points[i].data());
     normals->SetTuple(i, followed.Normals[i].data());
   }
   vtkNew<vtkTypeInt64Array> corners;
-  vtkLacunaArrays::SetNumberOfTuples(
+  lacuna::Arrays::SetNumberOfTuples(
     corners, 3 * static_cast<vtkIdType>(followed.Surface.Triangles.size()));
   vtkIdType at = 0;
   for (const auto& triangle : followed.Surface.Triangles)
@@ -116,7 +116,7 @@ void SetSurface(vtkPolyData* output, const lacuna::FollowedSurface& followed)
     }
   }
   output->SetPoints(points);
-  vtkLacunaArrays::SetTriangles(output, corners);
+  lacuna::Arrays::SetTriangles(output, corners);
   output->GetPointData()->SetNormals(normals);
 }
 
@@ -165,12 +165,12 @@ void vtkLacunaRBFSurface::RemovePriorSurface()
 //------------------------------------------------------------------------------
 void vtkLacunaRBFSurface::SetErrorArray(const char* name)
 {
-  vtkLacunaSetArrayName(this, this->ErrorArray, name);
+  lacuna::SetArrayName(this, this->ErrorArray, name);
 }
 
 void vtkLacunaRBFSurface::SetSideArray(const char* name)
 {
-  vtkLacunaSetArrayName(this, this->SideArray, name);
+  lacuna::SetArrayName(this, this->SideArray, name);
 }
 
 //------------------------------------------------------------------------------
@@ -223,7 +223,7 @@ void vtkLacunaRBFSurface::Announce(const lacuna::Ports& ports)
   int extent[6] = { 0, -1, 0, -1, 0, -1 };
   const double h = this->DistanceSpacing;
   vtkInformation* info = ports.GetOutputInformation(1);
-  vtkLacunaVolumeDirection::AnnounceAlongAxes(info);
+  lacuna::VolumeDirection::AnnounceAlongAxes(info);
   if (h > 0 && std::isfinite(h) && this->HasOutputBounds())
   {
     lacuna::Vec3 origin;
@@ -243,7 +243,7 @@ void vtkLacunaRBFSurface::Announce(const lacuna::Ports& ports)
 }
 
 //------------------------------------------------------------------------------
-void vtkLacunaRBFSurface::Make(const lacuna::Ports& ports, vtkLacunaExecution& execution)
+void vtkLacunaRBFSurface::Make(const lacuna::Ports& ports, lacuna::AlgorithmExecution& execution)
 {
   auto* distances = ports.GetOutput<vtkImageData>(1);
   distances->GetFieldData()->Initialize(); // VTK passes that of the input, which may be turned
@@ -273,7 +273,7 @@ void vtkLacunaRBFSurface::Make(const lacuna::Ports& ports, vtkLacunaExecution& e
   }
   const auto start = std::chrono::steady_clock::now();
   execution.SetStage(0, 0.05);
-  vtkLacunaSurfacePoints collected;
+  lacuna::SurfacePoints collected;
   collected.ErrorArray = this->ErrorArray;
   collected.SideArray = this->SideArray;
   for (int i = 0; i < this->GetNumberOfInputConnections(0); ++i)
@@ -281,7 +281,7 @@ void vtkLacunaRBFSurface::Make(const lacuna::Ports& ports, vtkLacunaExecution& e
     auto* data = ports.GetInput<vtkDataSet>(0, i);
     if (auto* image = vtkImageData::SafeDownCast(data))
     {
-      vtkLacunaVolumeDirection::Check(image);
+      lacuna::VolumeDirection::Check(image);
     }
     collected.Add(execution, data, i + 1);
   }
@@ -294,17 +294,17 @@ void vtkLacunaRBFSurface::Make(const lacuna::Ports& ports, vtkLacunaExecution& e
   const std::array<double, 6> own = GetBounds(points.Points, collected.Inside);
   const double extent = GetExtent(own);
   this->CheckDistanceGrid(own);
-  std::unique_ptr<vtkLacunaSurfacePrior> prior;
+  std::unique_ptr<lacuna::SurfacePrior> prior;
   if (this->PriorFunction)
   {
-    prior = std::make_unique<vtkLacunaSurfacePrior>(this->PriorFunction, extent);
+    prior = std::make_unique<lacuna::SurfacePrior>(this->PriorFunction, extent);
   }
   else if (this->GetNumberOfInputConnections(1) > 0)
   {
     auto* data = ports.GetInput<vtkDataSet>(1);
     if (data && data->GetNumberOfPoints() > 0)
     {
-      prior = std::make_unique<vtkLacunaSurfacePrior>(data);
+      prior = std::make_unique<lacuna::SurfacePrior>(data);
     }
     else
     {
@@ -399,7 +399,7 @@ void vtkLacunaRBFSurface::Make(const lacuna::Ports& ports, vtkLacunaExecution& e
     largest = std::max(largest, std::abs(r));
   }
   const auto set = [output](const char* name, double value)
-  { vtkLacunaFieldData::Set(output, name, { value }, 1); };
+  { lacuna::FieldData::Set(output, name, { value }, 1); };
   const lacuna::BlendedSplineReport& report = fit.GetReport();
   if (isClosed)
   {
@@ -524,7 +524,7 @@ void vtkLacunaRBFSurface::SetDistances(
   distances->SetSpacing(this->DistanceSpacing, this->DistanceSpacing, this->DistanceSpacing);
   vtkNew<vtkFloatArray> values;
   values->SetName("SignedDistance");
-  vtkLacunaArrays::SetNumberOfTuples(values, distances->GetNumberOfPoints());
+  lacuna::Arrays::SetNumberOfTuples(values, distances->GetNumberOfPoints());
   distances->GetPointData()->SetScalars(values);
   const lacuna::SurfaceDistance distance(surface);
   execution.For(values->GetNumberOfValues(), 4096,

@@ -7,7 +7,7 @@
  * - points with or without normals (the active ones, or the point array `Normals`; they leave the
  *   solid). Without, they are estimated from neighbours;
  * - triangle meshes, open or closed. Without normals, those of the triangles;
- * - depth maps (vtkLacunaDepthMap) with `Normals`, several views together;
+ * - depth maps (lacuna::DepthMap) with `Normals`, several views together;
  * - outlines: closed polylines, each in a plane of its own.
  *
  * Second input, optional (PriorSurface): a surface like the one that is sought, in the same place: a
@@ -182,7 +182,7 @@ protected:
   int FillInputPortInformation(int port, vtkInformation* info) override;
   int FillOutputPortInformation(int port, vtkInformation* info) override;
   void Announce(const lacuna::Ports& ports) override;
-  void Make(const lacuna::Ports& ports, vtkLacunaExecution& execution) override;
+  void Make(const lacuna::Ports& ports, lacuna::AlgorithmExecution& execution) override;
   std::string Parameters(int port) const override;
 
 private:

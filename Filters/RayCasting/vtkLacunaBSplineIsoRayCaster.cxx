@@ -5,6 +5,13 @@
 #include "lacunaMemory.h"
 #include "lacunaParameterText.h"
 
+#include "lacunaCasterView.h"
+#include "lacunaCutAway.h"
+#include "lacunaDepthMap.h"
+#include "lacunaFieldData.h"
+#include "lacunaFunctionText.h"
+#include "lacunaProposedLevel.h"
+#include "lacunaVolumeCaster.h"
 #include "vtkCharArray.h"
 #include "vtkDataArray.h"
 #include "vtkDoubleArray.h"
@@ -12,13 +19,6 @@
 #include "vtkImageData.h"
 #include "vtkImplicitFunction.h"
 #include "vtkInformation.h"
-#include "vtkLacunaCasterView.h"
-#include "vtkLacunaCutAway.h"
-#include "vtkLacunaDepthMap.h"
-#include "vtkLacunaFieldData.h"
-#include "vtkLacunaFunctionText.h"
-#include "vtkLacunaProposedLevel.h"
-#include "vtkLacunaVolumeCaster.h"
 #include "vtkMath.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
@@ -38,14 +38,14 @@ namespace
 constexpr const char* ThicknessName = "Thickness";
 
 using SDDP = vtkStreamingDemandDrivenPipeline;
-using View = vtkLacunaCasterView;
+using View = lacuna::CasterView;
 }
 
 //------------------------------------------------------------------------------
 class vtkLacunaBSplineIsoRayCaster::Internals
 {
 public:
-  vtkLacunaVolumeCaster Caster;
+  lacuna::VolumeCaster Caster;
   std::string Made; ///< parameters of the last map
 
   static lacuna::Vec3 Eye(vtkLacunaBSplineIsoRayCaster* self)
@@ -56,12 +56,12 @@ public:
   static lacuna::ImagePlane MakePlane(vtkLacunaBSplineIsoRayCaster* self, vtkImageData* volume)
   {
     const View::Frame frame = View::FrameOf(volume);
-    const lacuna::ViewSettings view = vtkLacunaDepthMap::GetView(self);
+    const lacuna::ViewSettings view = lacuna::DepthMap::GetView(self);
     if (self->Projection == Parallel)
     {
       return lacuna::MakeImagePlane(frame.IndexToWorld, frame.Size, view);
     }
-    if (!vtkLacunaDepthMap::IsGiven(self->EyePosition))
+    if (!lacuna::DepthMap::IsGiven(self->EyePosition))
     {
       throw std::runtime_error(
         "a perspective view needs EyePosition: the point from which the viewer looks");
@@ -167,7 +167,7 @@ public:
 
   /// Adds the arrays of one iso-value to the map.
   static void Cast(vtkLacunaBSplineIsoRayCaster* self, const Casting& casting, std::size_t i,
-    vtkLacunaExecution& execution)
+    lacuna::AlgorithmExecution& execution)
   {
     const bool isFirst = i == 0;
     const double isoValue = self->IsoValues[i];
@@ -175,11 +175,11 @@ public:
     const vtkIdType pixels = casting.Output->GetNumberOfPoints();
     vtkPointData* pointData = casting.Output->GetPointData();
     const auto depth =
-      View::MakeArray<vtkDoubleArray>(vtkLacunaDepthMap::DepthName + number, pixels);
+      View::MakeArray<vtkDoubleArray>(lacuna::DepthMap::DepthName + number, pixels);
     const auto normals =
-      View::MakeArray<vtkFloatArray>(vtkLacunaDepthMap::NormalsName + number, pixels, 3);
+      View::MakeArray<vtkFloatArray>(lacuna::DepthMap::NormalsName + number, pixels, 3);
     const auto mask =
-      isFirst ? View::MakeArray<vtkCharArray>(vtkLacunaDepthMap::MaskName, pixels) : nullptr;
+      isFirst ? View::MakeArray<vtkCharArray>(lacuna::DepthMap::MaskName, pixels) : nullptr;
     const auto thickness = isFirst && self->ComputeThickness
       ? View::MakeArray<vtkDoubleArray>(ThicknessName, pixels)
       : nullptr;
@@ -221,7 +221,7 @@ public:
       parameters.Add("EyePosition", casting.Request.Eye->Elements);
     }
     parameters.Add("NormalMethod", self->NormalMethod)
-      .Add("CutAway", vtkLacunaFunctionText::Describe(self->CutAway))
+      .Add("CutAway", lacuna::FunctionText::Describe(self->CutAway))
       .Add("CapCutAway", self->CapCutAway)
       .Add("CapBoundary", self->CapBoundary)
       .Add("ComputeThickness", self->ComputeThickness);
@@ -283,7 +283,7 @@ double vtkLacunaBSplineIsoRayCaster::GetIsoValue(int i) const
 //------------------------------------------------------------------------------
 double* vtkLacunaBSplineIsoRayCaster::GetProposedIsoRange()
 {
-  this->ProposedIsoRange = vtkLacunaProposedLevel::Get(this, this->ScalarArray, 500);
+  this->ProposedIsoRange = lacuna::ProposedLevel::Get(this, this->ScalarArray, 500);
   return this->ProposedIsoRange.data();
 }
 
@@ -342,13 +342,14 @@ void vtkLacunaBSplineIsoRayCaster::Announce(const lacuna::Ports& ports)
     info->Set(SDDP::WHOLE_EXTENT(), none, 6);
     return;
   }
-  vtkLacunaDepthMap::SetInformation(info, Internals::MakePlane(this, input));
+  lacuna::DepthMap::SetInformation(info, Internals::MakePlane(this, input));
 }
 
 //------------------------------------------------------------------------------
 // Any pixel's ray may go anywhere in the volume. Of the start depths all are asked for: a map of
 // another size must be seen to be one.
-void vtkLacunaBSplineIsoRayCaster::Make(const lacuna::Ports& ports, vtkLacunaExecution& execution)
+void vtkLacunaBSplineIsoRayCaster::Make(
+  const lacuna::Ports& ports, lacuna::AlgorithmExecution& execution)
 {
   auto* input = ports.GetInput<vtkImageData>();
   auto* output = ports.GetOutput<vtkImageData>();
@@ -378,7 +379,7 @@ void vtkLacunaBSplineIsoRayCaster::Make(const lacuna::Ports& ports, vtkLacunaExe
     throw std::runtime_error("pixels outside of the depth map were asked for");
   }
   output->SetExtent(extent.data());
-  vtkLacunaDepthMap::SetGeometry(output, plane);
+  lacuna::DepthMap::SetGeometry(output, plane);
 
   const lacuna::Vec3 eye = Internals::Eye(this);
   Internals::Casting casting{ caster, scalars->GetName() ? scalars->GetName() : "", plane,
@@ -408,7 +409,7 @@ void vtkLacunaBSplineIsoRayCaster::Make(const lacuna::Ports& ports, vtkLacunaExe
   {
     const View::Frame frame = View::FrameOf(input);
     cutAway =
-      vtkLacunaCutAway::MakeRegion(this->CutAway, 0.5 * lacuna::SmallestEdgeOf(frame.IndexToWorld),
+      lacuna::CutAway::MakeRegion(this->CutAway, 0.5 * lacuna::SmallestEdgeOf(frame.IndexToWorld),
         lacuna::CornersOf(frame.IndexToWorld, frame.Size));
     request.CutAway = cutAway.get();
   }
@@ -418,7 +419,7 @@ void vtkLacunaBSplineIsoRayCaster::Make(const lacuna::Ports& ports, vtkLacunaExe
     execution.SetStage(0.1 + 0.9 * i / count, 0.1 + 0.9 * (i + 1) / count);
     Internals::Cast(this, casting, i, execution);
   }
-  output->GetPointData()->SetActiveScalars(vtkLacunaDepthMap::DepthName);
+  output->GetPointData()->SetActiveScalars(lacuna::DepthMap::DepthName);
   if (caster.GetNumberOfNonFiniteVoxels() > 0 && caster.GetMinimum() <= caster.GetMaximum())
   {
     vtkWarningMacro("" << caster.GetNumberOfNonFiniteVoxels() << " voxels of array '"
@@ -426,13 +427,13 @@ void vtkLacunaBSplineIsoRayCaster::Make(const lacuna::Ports& ports, vtkLacunaExe
                        << "' are not finite numbers and are taken to be empty");
   }
 
-  vtkLacunaFieldData::Set(output, vtkLacunaDepthMap::IsoValuesName, this->IsoValues, 1);
+  lacuna::FieldData::Set(output, lacuna::DepthMap::IsoValuesName, this->IsoValues, 1);
   if (request.Eye)
   {
-    vtkLacunaFieldData::Set(
-      output, vtkLacunaDepthMap::EyePositionName, { eye[0], eye[1], eye[2] }, 3);
-    vtkLacunaFieldData::Set(
-      output, vtkLacunaDepthMap::ViewAngleName, { lacuna::ViewAngleOf(plane, eye) }, 1);
+    lacuna::FieldData::Set(
+      output, lacuna::DepthMap::EyePositionName, { eye[0], eye[1], eye[2] }, 3);
+    lacuna::FieldData::Set(
+      output, lacuna::DepthMap::ViewAngleName, { lacuna::ViewAngleOf(plane, eye) }, 1);
   }
   this->Internal->Made = Internals::Describe(this, casting);
 }

@@ -12,7 +12,7 @@
  * Input: vtkImageData, at least two voxels along each axis, point scalars of one component and any
  * real type; any origin, spacing, direction matrix and extent.
  *
- * Output: a depth map, see vtkLacunaDepthMap.h: vtkImageData of W x H x 1, x = the viewer's right,
+ * Output: a depth map, see lacunaDepthMap.h: vtkImageData of W x H x 1, x = the viewer's right,
  * y = down (ViewUp reversed and made orthogonal), z = ViewDirection. Point data: Depth (double, mm
  * along the ray, NaN where there is none; active scalars), vtkValidPointMask (char), Normals (float
  * x 3, unit, world, towards the viewer), Depth_1 and Normals_1, ... for the second iso-value and so
@@ -217,7 +217,7 @@ protected:
 
   int FillInputPortInformation(int port, vtkInformation* info) override;
   void Announce(const lacuna::Ports& ports) override;
-  void Make(const lacuna::Ports& ports, vtkLacunaExecution& execution) override;
+  void Make(const lacuna::Ports& ports, lacuna::AlgorithmExecution& execution) override;
   std::string Parameters(int port) const override;
 
   std::string ScalarArray;

@@ -4,18 +4,18 @@
 #include "lacunaDepthNormals.h"
 #include "lacunaDepthShader.h"
 
+#include "lacunaArrays.h"
+#include "lacunaCasterView.h"
+#include "lacunaDepthMap.h"
+#include "lacunaFunctionText.h"
+#include "lacunaMapDepths.h"
 #include "lacunaParameterText.h"
+#include "lacunaShadows.h"
 #include "vtkDataArray.h"
 #include "vtkFloatArray.h"
 #include "vtkImageData.h"
 #include "vtkImplicitFunction.h"
 #include "vtkInformation.h"
-#include "vtkLacunaArrays.h"
-#include "vtkLacunaCasterView.h"
-#include "vtkLacunaDepthMap.h"
-#include "vtkLacunaFunctionText.h"
-#include "vtkLacunaMapDepths.h"
-#include "vtkLacunaShadows.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
@@ -48,7 +48,7 @@ lacuna::Sphere CircumscribedSphere(vtkImageData* volume)
   const int* dimensions = volume->GetDimensions();
   const lacuna::Vec3 half{ 0.5 * (dimensions[0] - 1), 0.5 * (dimensions[1] - 1),
     0.5 * (dimensions[2] - 1) };
-  const lacuna::Matrix4 toWorld = vtkLacunaCasterView::FrameOf(volume).IndexToWorld;
+  const lacuna::Matrix4 toWorld = lacuna::CasterView::FrameOf(volume).IndexToWorld;
   lacuna::Sphere sphere;
   sphere.Centre = toWorld.Point(half);
   for (int corner = 0; corner < 4; ++corner)
@@ -65,13 +65,13 @@ lacuna::Sphere CircumscribedSphere(vtkImageData* volume)
 class vtkLacunaDepthMapShader::Internals
 {
 public:
-  vtkLacunaShadows Shadows;
+  lacuna::Shadows Shadows;
   vtkSmartPointer<vtkImplicitFunction> CutAway;
 
   lacuna::ShadowCaster PrepareShadows(vtkLacunaDepthMapShader* self, vtkImageData* map,
-    vtkImageData* volume, vtkLacunaExecution& execution)
+    vtkImageData* volume, lacuna::AlgorithmExecution& execution)
   {
-    vtkLacunaShadows::Settings settings;
+    lacuna::Shadows::Settings settings;
     settings.DepthArray = self->DepthArray;
     settings.VolumeArray = self->VolumeArray;
     settings.Interpolation = self->Interpolation;
@@ -125,24 +125,24 @@ public:
   static vtkSmartPointer<vtkFloatArray> StoredNormals(
     vtkLacunaDepthMapShader* self, vtkImageData* output)
   {
-    const std::string name = vtkLacunaDepthMap::GetNormalsName(self->DepthArray);
+    const std::string name = lacuna::DepthMap::GetNormalsName(self->DepthArray);
     vtkDataArray* stored = output->GetPointData()->GetArray(name.c_str());
     if (!stored || stored->GetNumberOfComponents() != 3)
     {
       return nullptr;
     }
     auto normals = vtkSmartPointer<vtkFloatArray>::New();
-    vtkLacunaArrays::Copy(stored, normals);
+    lacuna::Arrays::Copy(stored, normals);
     return normals;
   }
 
   /// The normals to shade with, and how they differ from the map's. May be null for DepthOnly.
   static vtkSmartPointer<vtkFloatArray> MakeNormals(vtkLacunaDepthMapShader* self,
-    const lacuna::DepthGrid& grid, vtkImageData* output, vtkLacunaExecution& execution)
+    const lacuna::DepthGrid& grid, vtkImageData* output, lacuna::AlgorithmExecution& execution)
   {
     const int* e = output->GetExtent();
     const std::array<int, 4> extent = { e[0], e[1], e[2], e[3] };
-    const std::string name = vtkLacunaDepthMap::GetNormalsName(self->DepthArray);
+    const std::string name = lacuna::DepthMap::GetNormalsName(self->DepthArray);
     vtkSmartPointer<vtkFloatArray> stored = StoredNormals(self, output);
     if (self->NormalMethod == Stored)
     {
@@ -168,7 +168,7 @@ public:
     auto normals = vtkSmartPointer<vtkFloatArray>::New();
     normals->SetName(name.c_str());
     normals->SetNumberOfComponents(3);
-    vtkLacunaArrays::SetNumberOfTuples(normals, output->GetNumberOfPoints());
+    lacuna::Arrays::SetNumberOfTuples(normals, output->GetNumberOfPoints());
     const lacuna::DepthNormalMethod methods[] = { lacuna::DepthNormalMethod::CentralDifference,
       lacuna::DepthNormalMethod::Gordon, lacuna::DepthNormalMethod::Predicate };
     lacuna::EstimateNormals(grid, methods[self->NormalMethod - CentralDifference],
@@ -176,8 +176,8 @@ public:
     if (stored)
     {
       vtkNew<vtkFloatArray> difference;
-      difference->SetName(vtkLacunaDepthMap::NormalDifferenceName);
-      vtkLacunaArrays::SetNumberOfTuples(difference, output->GetNumberOfPoints());
+      difference->SetName(lacuna::DepthMap::NormalDifferenceName);
+      lacuna::Arrays::SetNumberOfTuples(difference, output->GetNumberOfPoints());
       lacuna::AnglesBetween(stored->GetPointer(0), normals->GetPointer(0),
         output->GetNumberOfPoints(), difference->GetPointer(0), execution);
       output->GetPointData()->AddArray(difference);
@@ -212,7 +212,7 @@ public:
       .Add("Interpolation", self->Interpolation)
       .Add("SolidSide", self->SolidSide)
       .Add("ShadowBias", self->ShadowBias)
-      .Add("CutAway", vtkLacunaFunctionText::Describe(self->GetCutAway()))
+      .Add("CutAway", lacuna::FunctionText::Describe(self->GetCutAway()))
       .Add("CapCutAway", self->CapCutAway)
       .Add("CapBoundary", self->CapBoundary)
       .Get();
@@ -319,14 +319,15 @@ void vtkLacunaDepthMapShader::Ask(const lacuna::Ports& ports)
 }
 
 //------------------------------------------------------------------------------
-void vtkLacunaDepthMapShader::Make(const lacuna::Ports& ports, vtkLacunaExecution& execution)
+void vtkLacunaDepthMapShader::Make(
+  const lacuna::Ports& ports, lacuna::AlgorithmExecution& execution)
 {
   auto* input = ports.GetInput<vtkImageData>();
   auto* volume = ports.GetInput<vtkImageData>(1);
   auto* output = ports.GetOutput<vtkImageData>();
   lacuna::ShadingSettings settings = Internals::MakeSettings(this);
-  const vtkLacunaDepthMap contract(input);
-  const vtkLacunaMapDepths depths(input, contract, this->DepthArray);
+  const lacuna::DepthMap contract(input);
+  const lacuna::MapDepths depths(input, contract, this->DepthArray);
   const lacuna::DepthGrid& grid = depths.GetGrid();
   std::array<int, 6> extent = ports.GetExtent();
   if (extent[0] < grid.Extent[0] || extent[1] > grid.Extent[1] || extent[2] < grid.Extent[2] ||
@@ -363,13 +364,13 @@ void vtkLacunaDepthMapShader::Make(const lacuna::Ports& ports, vtkLacunaExecutio
 
   execution.SetStage(0.4, 1);
   vtkNew<vtkUnsignedCharArray> colors;
-  colors->SetName(vtkLacunaDepthMap::ColorName);
+  colors->SetName(lacuna::DepthMap::ColorName);
   colors->SetNumberOfComponents(3);
-  vtkLacunaArrays::SetNumberOfTuples(colors, output->GetNumberOfPoints());
+  lacuna::Arrays::SetNumberOfTuples(colors, output->GetNumberOfPoints());
   lacuna::ShadeDepths(grid, normals ? normals->GetPointer(0) : nullptr, settings, shadows,
     { extent[0], extent[1], extent[2], extent[3] }, colors->GetPointer(0), execution);
   output->GetPointData()->AddArray(colors);
-  output->GetPointData()->SetActiveScalars(vtkLacunaDepthMap::ColorName);
+  output->GetPointData()->SetActiveScalars(lacuna::DepthMap::ColorName);
 }
 
 //------------------------------------------------------------------------------

@@ -20,12 +20,12 @@
  *
  * Formulas, the nine cases and pictures: Documentation/UserGuide/depth-map-shader.md.
  *
- * Input 0: a depth map, see vtkLacunaDepthMap.h. Input 1 (optional): vtkImageData with point scalars of
+ * Input 0: a depth map, see lacunaDepthMap.h. Input 1 (optional): vtkImageData with point scalars of
  * one component, at least two voxels along each axis.
  *
  * Output: the same map with its arrays and geometry, and Color (unsigned char x 3, active scalars;
  * pixels without a depth have BackgroundColor, and 0 in vtkValidPointMask), the normals used (float x
- * 3, in Normals, for other depth arrays see vtkLacunaDepthMap::GetNormalsName) and, if the map had
+ * 3, in Normals, for other depth arrays see lacuna::DepthMap::GetNormalsName) and, if the map had
  * normals and others were used, NormalDifference: degrees between both (float, NaN without a depth or
  * a normal).
  * Requested extents are honoured.
@@ -205,7 +205,7 @@ protected:
   int FillInputPortInformation(int port, vtkInformation* info) override;
   void Announce(const lacuna::Ports& ports) override;
   void Ask(const lacuna::Ports& ports) override;
-  void Make(const lacuna::Ports& ports, vtkLacunaExecution& execution) override;
+  void Make(const lacuna::Ports& ports, lacuna::AlgorithmExecution& execution) override;
   std::string Parameters(int port) const override;
 
   std::string DepthArray = "Depth";

@@ -4,6 +4,9 @@
 #include "lacunaDepthMapMesher.h"
 #include "lacunaDepthNormals.h"
 
+#include "lacunaArrays.h"
+#include "lacunaDepthMap.h"
+#include "lacunaMapDepths.h"
 #include "lacunaMemory.h"
 #include "lacunaParameterText.h"
 #include "vtkDoubleArray.h"
@@ -12,9 +15,6 @@
 #include "vtkIdTypeArray.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
-#include "vtkLacunaArrays.h"
-#include "vtkLacunaDepthMap.h"
-#include "vtkLacunaMapDepths.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
@@ -59,7 +59,7 @@ void CarryArrays(vtkPointData* from, vtkIdList* ids, vtkPointData* to)
     const auto carried = vtkSmartPointer<vtkAbstractArray>::Take(array->NewInstance());
     carried->SetName(array->GetName());
     carried->SetNumberOfComponents(array->GetNumberOfComponents());
-    vtkLacunaArrays::SetNumberOfTuples(carried, ids->GetNumberOfIds());
+    lacuna::Arrays::SetNumberOfTuples(carried, ids->GetNumberOfIds());
     array->GetTuples(ids, carried);
     to->AddArray(carried);
   }
@@ -68,7 +68,7 @@ void CarryArrays(vtkPointData* from, vtkIdList* ids, vtkPointData* to)
 /// Degrees between the map's normals and those that the depths give by the nine cases.
 vtkSmartPointer<vtkFloatArray> DifferenceOfNormals(vtkImageData* map, const std::string& name,
   const lacuna::DepthGrid& grid, const lacuna::DiscontinuityLimits& limits,
-  vtkLacunaExecution& execution)
+  lacuna::AlgorithmExecution& execution)
 {
   vtkDataArray* array = map->GetPointData()->GetArray(name.c_str());
   if (!array || array->GetNumberOfComponents() != 3)
@@ -77,16 +77,16 @@ vtkSmartPointer<vtkFloatArray> DifferenceOfNormals(vtkImageData* map, const std:
       "' of three components to compare: turn ComputeNormalDifference off");
   }
   vtkNew<vtkFloatArray> stored;
-  vtkLacunaArrays::Copy(array, stored);
+  lacuna::Arrays::Copy(array, stored);
   const vtkIdType pixels = map->GetNumberOfPoints();
   vtkNew<vtkFloatArray> estimated;
   estimated->SetNumberOfComponents(3);
-  vtkLacunaArrays::SetNumberOfTuples(estimated, pixels);
+  lacuna::Arrays::SetNumberOfTuples(estimated, pixels);
   lacuna::EstimateNormals(grid, lacuna::DepthNormalMethod::Predicate, limits, grid.Extent,
     estimated->GetPointer(0), execution);
   auto difference = vtkSmartPointer<vtkFloatArray>::New();
-  difference->SetName(vtkLacunaDepthMap::NormalDifferenceName);
-  vtkLacunaArrays::SetNumberOfTuples(difference, pixels);
+  difference->SetName(lacuna::DepthMap::NormalDifferenceName);
+  lacuna::Arrays::SetNumberOfTuples(difference, pixels);
   lacuna::AnglesBetween(
     stored->GetPointer(0), estimated->GetPointer(0), pixels, difference->GetPointer(0), execution);
   return difference;
@@ -122,12 +122,13 @@ void vtkLacunaDepthMapSurface::Ask(const lacuna::Ports& ports)
 }
 
 //------------------------------------------------------------------------------
-void vtkLacunaDepthMapSurface::Make(const lacuna::Ports& ports, vtkLacunaExecution& execution)
+void vtkLacunaDepthMapSurface::Make(
+  const lacuna::Ports& ports, lacuna::AlgorithmExecution& execution)
 {
   auto* input = ports.GetInput<vtkImageData>();
   auto* output = ports.GetOutput<vtkPolyData>();
-  const vtkLacunaDepthMap map(input);
-  const vtkLacunaMapDepths depths(input, map, this->DepthArray);
+  const lacuna::DepthMap map(input);
+  const lacuna::MapDepths depths(input, map, this->DepthArray);
   int whole[6];
   std::copy_n(input->GetExtent(), 6, whole);
   ports.GetInputInformation()->Get(SDDP::WHOLE_EXTENT(), whole);
@@ -154,7 +155,7 @@ void vtkLacunaDepthMapSurface::Make(const lacuna::Ports& ports, vtkLacunaExecuti
       32.0 * static_cast<double>(mesher.GetNumberOfTriangles()));
   vtkNew<vtkDoubleArray> coordinates;
   coordinates->SetNumberOfComponents(3);
-  vtkLacunaArrays::SetNumberOfTuples(coordinates, numberOfPoints);
+  lacuna::Arrays::SetNumberOfTuples(coordinates, numberOfPoints);
   std::vector<long long> pixels(numberOfPoints);
   mesher.FillPoints(coordinates->GetPointer(0), pixels.data(), execution);
   vtkNew<vtkPoints> points;
@@ -163,15 +164,15 @@ void vtkLacunaDepthMapSurface::Make(const lacuna::Ports& ports, vtkLacunaExecuti
 
   execution.SetStage(0.8, 1);
   vtkNew<vtkTypeInt64Array> corners;
-  vtkLacunaArrays::SetNumberOfTuples(corners, 3 * mesher.GetNumberOfTriangles());
+  lacuna::Arrays::SetNumberOfTuples(corners, 3 * mesher.GetNumberOfTriangles());
   mesher.FillTriangles(corners->GetPointer(0), execution);
-  vtkLacunaArrays::SetTriangles(output, corners);
+  lacuna::Arrays::SetTriangles(output, corners);
 
   vtkNew<vtkIdList> ids;
   ids->SetNumberOfIds(numberOfPoints);
   vtkNew<vtkIdTypeArray> pixelIds;
-  pixelIds->SetName(vtkLacunaDepthMap::PixelIdName);
-  vtkLacunaArrays::SetNumberOfTuples(pixelIds, numberOfPoints);
+  pixelIds->SetName(lacuna::DepthMap::PixelIdName);
+  lacuna::Arrays::SetNumberOfTuples(pixelIds, numberOfPoints);
   const std::int64_t columns = std::int64_t(extent[1]) - extent[0] + 1;
   const std::int64_t wholeColumns = std::int64_t(whole[1]) - whole[0] + 1;
   for (vtkIdType i = 0; i < numberOfPoints; ++i)
@@ -184,19 +185,19 @@ void vtkLacunaDepthMapSurface::Make(const lacuna::Ports& ports, vtkLacunaExecuti
   vtkPointData* pointData = output->GetPointData();
   CarryArrays(input->GetPointData(), ids, pointData);
   pointData->SetPedigreeIds(pixelIds);
-  const std::string normals = vtkLacunaDepthMap::GetNormalsName(this->DepthArray);
+  const std::string normals = lacuna::DepthMap::GetNormalsName(this->DepthArray);
   if (this->ComputeNormalDifference)
   {
     const auto difference =
       DifferenceOfNormals(input, normals, depths.GetGrid(), limits, execution);
     vtkNew<vtkFloatArray> carried;
     carried->SetName(difference->GetName());
-    vtkLacunaArrays::SetNumberOfTuples(carried, numberOfPoints);
+    lacuna::Arrays::SetNumberOfTuples(carried, numberOfPoints);
     difference->GetTuples(ids, carried);
     pointData->AddArray(carried);
   }
-  pointData->SetActiveScalars(pointData->HasArray(vtkLacunaDepthMap::ColorName)
-      ? vtkLacunaDepthMap::ColorName
+  pointData->SetActiveScalars(pointData->HasArray(lacuna::DepthMap::ColorName)
+      ? lacuna::DepthMap::ColorName
       : this->DepthArray.c_str());
   vtkDataArray* carriedNormals = pointData->GetArray(normals.c_str());
   if (carriedNormals && carriedNormals->GetNumberOfComponents() == 3)

@@ -14,7 +14,7 @@
  * MaximumAngle the same way, and its step of depth is at least a third of this one's; or there is no
  * next edge. A steep side of a skull, which bends smoothly, stays whole.
  *
- * Input: a depth map, see vtkLacunaDepthMap.h. Output: vtkPolyData with points in double precision;
+ * Input: a depth map, see lacunaDepthMap.h. Output: vtkPolyData with points in double precision;
  * all point arrays of the map are carried along, the normals that belong to DepthArray being the
  * active normals, and Color, which a shaded map has, the active scalars (without it, DepthArray);
  * PixelId (vtkIdType, pedigree ids): column + row * W, counted from the corner of the map's whole
@@ -86,7 +86,7 @@ protected:
   int FillInputPortInformation(int port, vtkInformation* info) override;
   void Announce(const lacuna::Ports& ports) override;
   void Ask(const lacuna::Ports& ports) override;
-  void Make(const lacuna::Ports& ports, vtkLacunaExecution& execution) override;
+  void Make(const lacuna::Ports& ports, lacuna::AlgorithmExecution& execution) override;
   std::string Parameters(int port) const override;
 
   std::string DepthArray = "Depth";

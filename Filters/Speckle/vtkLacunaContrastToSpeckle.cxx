@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkLacunaContrastToSpeckle.h"
 
+#include "lacunaArrayScalarType.h"
 #include "lacunaContrast.h"
 #include "lacunaMemory.h"
 #include "lacunaParameterText.h"
+#include "lacunaSpeckleInput.h"
+#include "lacunaVolumeDirection.h"
 #include "vtkDoubleArray.h"
 #include "vtkIdTypeArray.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
-#include "vtkLacunaScalarType.h"
-#include "vtkLacunaSpeckleInput.h"
-#include "vtkLacunaVolumeDirection.h"
 #include "vtkMatrix4x4.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
@@ -36,10 +36,10 @@ bool HasBounds(const double bounds[6])
 
 vtkDataArray* FindNumbers(vtkImageData* image, const std::string& name)
 {
-  vtkDataArray* array = vtkLacunaSpeckleInput::FindArray(image, name);
+  vtkDataArray* array = lacuna::SpeckleInput::FindArray(image, name);
   if (array->GetNumberOfComponents() != 1)
   {
-    throw std::runtime_error(vtkLacunaSpeckleInput::Name(array) + " has " +
+    throw std::runtime_error(lacuna::SpeckleInput::Name(array) + " has " +
       std::to_string(array->GetNumberOfComponents()) +
       " components; choose one with a single component, for example a Calculator's result");
   }
@@ -61,12 +61,12 @@ void Mark(vtkImageData* image, const std::string& array, const double bounds[6],
       continue;
     }
     vtkDataArray* mask = FindNumbers(image, name);
-    values.push_back(vtkLacunaSpeckleInput::MakeContiguous(mask));
-    rule.Masks.push_back({ vtkLacunaScalarType::Get(mask), values.back()->GetVoidPointer(0) });
+    values.push_back(lacuna::SpeckleInput::MakeContiguous(mask));
+    rule.Masks.push_back({ lacuna::ArrayScalarType::Get(mask), values.back()->GetVoidPointer(0) });
   }
-  vtkLacunaVolumeDirection::Check(image);
+  lacuna::VolumeDirection::Check(image);
   const lacuna::Matrix4 indexToWorld(image->GetIndexToPhysicalMatrix()->GetData());
-  lacuna::MarkRegion(vtkLacunaSpeckleInput::GetExtent(image->GetExtent()), indexToWorld, rule,
+  lacuna::MarkRegion(lacuna::SpeckleInput::GetExtent(image->GetExtent()), indexToWorld, rule,
     region, regions.data(), execution);
 }
 
@@ -149,12 +149,13 @@ void vtkLacunaContrastToSpeckle::MakeNothing(const lacuna::Ports& ports)
 }
 
 //------------------------------------------------------------------------------
-void vtkLacunaContrastToSpeckle::Make(const lacuna::Ports& ports, vtkLacunaExecution& execution)
+void vtkLacunaContrastToSpeckle::Make(
+  const lacuna::Ports& ports, lacuna::AlgorithmExecution& execution)
 {
   auto* image = ports.GetInput<vtkImageData>();
   vtkDataArray* array = FindNumbers(image, this->ScalarArray);
-  const lacuna::ScalarType type = vtkLacunaScalarType::Get(array);
-  const auto samples = vtkLacunaSpeckleInput::MakeContiguous(array);
+  const lacuna::ScalarType type = lacuna::ArrayScalarType::Get(array);
+  const auto samples = lacuna::SpeckleInput::MakeContiguous(array);
   if (this->InsideArray.empty() && !HasBounds(this->InsideBounds))
   {
     throw std::runtime_error("no inside region: give InsideArray or InsideBounds");
@@ -168,7 +169,7 @@ void vtkLacunaContrastToSpeckle::Make(const lacuna::Ports& ports, vtkLacunaExecu
   execution.SetStage(0.2, 0.4);
   Mark(image, this->OutsideArray, this->OutsideBounds, lacuna::OutsideRegion, regions, execution);
   Measures measures;
-  const lacuna::Extent box = vtkLacunaSpeckleInput::GetExtent(image->GetExtent());
+  const lacuna::Extent box = lacuna::SpeckleInput::GetExtent(image->GetExtent());
   lacuna::DispatchScalars(type, samples->GetVoidPointer(0),
     [&](const auto* values)
     {

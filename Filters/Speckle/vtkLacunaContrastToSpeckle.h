@@ -79,7 +79,7 @@ protected:
   ~vtkLacunaContrastToSpeckle() override = default;
 
   int FillInputPortInformation(int port, vtkInformation* info) override;
-  void Make(const lacuna::Ports& ports, vtkLacunaExecution& execution) override;
+  void Make(const lacuna::Ports& ports, lacuna::AlgorithmExecution& execution) override;
   std::string Parameters(int port) const override;
   void MakeNothing(const lacuna::Ports& ports) override;
 

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkLacunaSpeckleFilter.h"
 
+#include "lacunaArrayScalarType.h"
+#include "lacunaArrays.h"
 #include "lacunaMemory.h"
 #include "lacunaParameterText.h"
 #include "lacunaSpeckleFilter.h"
+#include "lacunaSpeckleInput.h"
+#include "lacunaTrackedSlices.h"
+#include "lacunaVolumeDirection.h"
 #include "vtkDataObject.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
-#include "vtkLacunaArrays.h"
-#include "vtkLacunaScalarType.h"
-#include "vtkLacunaSpeckleInput.h"
-#include "vtkLacunaTrackedSlices.h"
-#include "vtkLacunaVolumeDirection.h"
 #include "vtkMatrix3x3.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
@@ -49,7 +49,7 @@ void CopyOthers(vtkImageData* input, vtkDataArray* chosen, vtkImageData* output)
     {
       vtkDataArray::SafeDownCast(part)->SetLookupTable(numbers->GetLookupTable());
     }
-    vtkLacunaArrays::SetNumberOfTuples(part, output->GetNumberOfPoints());
+    lacuna::Arrays::SetNumberOfTuples(part, output->GetNumberOfPoints());
     vtkIdType to = 0;
     for (int k = extent[4]; k <= extent[5]; ++k)
     {
@@ -94,15 +94,15 @@ lacuna::SpeckleParameters MakeParameters(vtkLacunaSpeckleFilter* self, const dou
 /// Only what the operation uses.
 bool IsTrackedSlices(vtkDataObject* data)
 {
-  return data->GetFieldData()->HasArray(vtkLacunaTrackedSlices::ImageToReferenceName) ||
-    data->GetFieldData()->HasArray(vtkLacunaTrackedSlices::SliceStatusName);
+  return data->GetFieldData()->HasArray(lacuna::TrackedSlices::ImageToReferenceName) ||
+    data->GetFieldData()->HasArray(lacuna::TrackedSlices::SliceStatusName);
 }
 
 lacuna::Extent GetWhole(vtkInformation* info)
 {
   int whole[6] = { 0, -1, 0, -1, 0, -1 };
   info->Get(Pipeline::WHOLE_EXTENT(), whole);
-  return vtkLacunaSpeckleInput::GetExtent(whole);
+  return lacuna::SpeckleInput::GetExtent(whole);
 }
 
 /// from: the samples of a component after the other at each point of fromBox.
@@ -181,12 +181,12 @@ void vtkLacunaSpeckleFilter::Ask(const lacuna::Ports& ports)
 }
 
 //------------------------------------------------------------------------------
-void vtkLacunaSpeckleFilter::Make(const lacuna::Ports& ports, vtkLacunaExecution& execution)
+void vtkLacunaSpeckleFilter::Make(const lacuna::Ports& ports, lacuna::AlgorithmExecution& execution)
 {
   auto* input = ports.GetInput<vtkImageData>();
   auto* output = ports.GetOutput<vtkImageData>();
   lacuna::Extent box = ports.GetExtent();
-  const lacuna::Extent inBox = vtkLacunaSpeckleInput::GetExtent(input->GetExtent());
+  const lacuna::Extent inBox = lacuna::SpeckleInput::GetExtent(input->GetExtent());
   output->SetOrigin(input->GetOrigin());
   output->SetSpacing(input->GetSpacing());
   output->SetDirectionMatrix(input->GetDirectionMatrix()->GetData());
@@ -195,11 +195,11 @@ void vtkLacunaSpeckleFilter::Make(const lacuna::Ports& ports, vtkLacunaExecution
   {
     return;
   }
-  vtkLacunaVolumeDirection::Check(input);
+  lacuna::VolumeDirection::Check(input);
   const lacuna::SpeckleParameters parameters = MakeParameters(this, input->GetSpacing());
-  vtkDataArray* chosen = vtkLacunaSpeckleInput::FindArray(input, this->ScalarArray);
-  const lacuna::ScalarType scalarType = vtkLacunaScalarType::Get(chosen);
-  const auto from = vtkLacunaSpeckleInput::MakeContiguous(chosen);
+  vtkDataArray* chosen = lacuna::SpeckleInput::FindArray(input, this->ScalarArray);
+  const lacuna::ScalarType scalarType = lacuna::ArrayScalarType::Get(chosen);
+  const auto from = lacuna::SpeckleInput::MakeContiguous(chosen);
   if (this->KernelSize[2] > 1 && IsTrackedSlices(input))
   {
     vtkWarningMacro("KernelSize z is " << this->KernelSize[2]
@@ -212,13 +212,13 @@ void vtkLacunaSpeckleFilter::Make(const lacuna::Ports& ports, vtkLacunaExecution
   {
     type = type == VTK_DOUBLE ? VTK_DOUBLE : VTK_FLOAT;
   }
-  lacuna::RequireMemory("the filtered " + vtkLacunaSpeckleInput::Name(chosen),
+  lacuna::RequireMemory("the filtered " + lacuna::SpeckleInput::Name(chosen),
     static_cast<double>(lacuna::NumberOfSamples(box)) * from->GetNumberOfComponents() *
       vtkDataArray::GetDataTypeSize(type));
   auto to = vtk::TakeSmartPointer(vtkDataArray::CreateDataArray(type));
   to->SetName(from->GetName());
   to->SetNumberOfComponents(from->GetNumberOfComponents());
-  vtkLacunaArrays::SetNumberOfTuples(to, lacuna::NumberOfSamples(box));
+  lacuna::Arrays::SetNumberOfTuples(to, lacuna::NumberOfSamples(box));
   lacuna::DispatchScalars(scalarType, from->GetVoidPointer(0),
     [&](const auto* samples) { FilterArray(samples, inBox, to, box, parameters, execution); });
 

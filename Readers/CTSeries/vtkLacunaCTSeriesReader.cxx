@@ -1,16 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkLacunaCTSeriesReader.h"
 
+#include "lacunaArrayScalarType.h"
+#include "lacunaArrays.h"
 #include "lacunaCTGeometry.h"
 #include "lacunaCTSeries.h"
 #include "lacunaCTVolume.h"
+#include "lacunaCoordinates.h"
 #include "lacunaDicomDecoder.h"
 #include "lacunaDicomFolder.h"
+#include "lacunaFieldData.h"
 #include "lacunaHounsfield.h"
 #include "lacunaMemory.h"
 #include "lacunaParameterText.h"
 #include "lacunaPatientIdentity.h"
 #include "lacunaPrintableText.h"
+#include "lacunaReading.h"
+#include "lacunaVolumeDirection.h"
 #include "vtkCallbackCommand.h"
 #include "vtkCommand.h"
 #include "vtkDataArray.h"
@@ -22,12 +28,6 @@
 #include "vtkInformation.h"
 #include "vtkInformationIntegerRequestKey.h"
 #include "vtkIntArray.h"
-#include "vtkLacunaArrays.h"
-#include "vtkLacunaCoordinates.h"
-#include "vtkLacunaFieldData.h"
-#include "vtkLacunaReading.h"
-#include "vtkLacunaScalarType.h"
-#include "vtkLacunaVolumeDirection.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkOutputWindow.h"
@@ -63,10 +63,10 @@ void AddString(vtkDataObject* data, const char* name, const std::string& text)
 }
 
 // Headers are read before the request for data, when VTK has not yet reset an abort of before.
-class HeaderExecution : public vtkLacunaExecution
+class HeaderExecution : public lacuna::AlgorithmExecution
 {
 public:
-  using vtkLacunaExecution::vtkLacunaExecution;
+  using lacuna::AlgorithmExecution::AlgorithmExecution;
 
 protected:
   bool OnProgress(double) override { return true; }
@@ -258,7 +258,7 @@ void vtkLacunaCTSeriesReader::Announce(const lacuna::Ports& ports)
   found.Warned = false;
   found.SeriesList->Reset();
   found.Notes->Reset();
-  vtkLacunaReading::Run(
+  lacuna::Reading::Run(
     this->FileName, "a DICOM file of a CT series, or its folder",
     [this](unsigned long code) { this->SetErrorCode(code); },
     [&]
@@ -286,7 +286,7 @@ void vtkLacunaCTSeriesReader::AnnounceGrid(vtkInformation* info) const
   info->Set(vtkDataObject::DIRECTION(), direction, 9);
   // Ranks share out whole images, each of which is read by one of them.
   info->Set(vtkExtentTranslator::UPDATE_SPLIT_MODE(), vtkExtentTranslator::Z_SLAB_MODE);
-  vtkDataObject::SetPointDataActiveScalarInfo(info, vtkLacunaScalarType::ToVTK(found.Type), 1);
+  vtkDataObject::SetPointDataActiveScalarInfo(info, lacuna::ArrayScalarType::ToVTK(found.Type), 1);
 }
 
 //------------------------------------------------------------------------------
@@ -312,7 +312,7 @@ void vtkLacunaCTSeriesReader::AddFieldData(vtkImageData* output) const
 {
   const lacuna::CTGeometry& geometry = this->Found->Geometry;
   const lacuna::CTFileHeader& header = *geometry.Slices[0].Frame.Header;
-  vtkLacunaVolumeDirection::Record(output);
+  lacuna::VolumeDirection::Record(output);
   const std::pair<const char*, const std::string&> texts[] = { { "PatientPosition",
                                                                  header.PatientPosition },
     { "ConvolutionKernel", header.ConvolutionKernel }, { "PatientName", header.Patient.Name },
@@ -328,7 +328,7 @@ void vtkLacunaCTSeriesReader::AddFieldData(vtkImageData* output) const
   }
   if (geometry.TiltDegrees != 0)
   {
-    vtkLacunaFieldData::Set(output, "GantryTilt", { geometry.TiltDegrees }, 1);
+    lacuna::FieldData::Set(output, "GantryTilt", { geometry.TiltDegrees }, 1);
   }
   if (!geometry.Interpolated.empty())
   {
@@ -340,11 +340,12 @@ void vtkLacunaCTSeriesReader::AddFieldData(vtkImageData* output) const
     }
     output->GetFieldData()->AddArray(array);
   }
-  vtkLacunaCoordinates::Mark(output, vtkLacunaCoordinates::Patient);
+  lacuna::Coordinates::Mark(output, lacuna::Coordinates::Patient);
 }
 
 //------------------------------------------------------------------------------
-void vtkLacunaCTSeriesReader::Make(const lacuna::Ports& ports, vtkLacunaExecution& execution)
+void vtkLacunaCTSeriesReader::Make(
+  const lacuna::Ports& ports, lacuna::AlgorithmExecution& execution)
 {
   Content& found = *this->Found;
   for (const std::string& warning : found.Warnings)
@@ -363,7 +364,7 @@ void vtkLacunaCTSeriesReader::Make(const lacuna::Ports& ports, vtkLacunaExecutio
   output->SetDirectionMatrix(info->Get(vtkDataObject::DIRECTION()));
   output->SetExtent(extent.data());
   this->AddFieldData(output);
-  vtkLacunaReading::Run(
+  lacuna::Reading::Run(
     this->FileName, "", [this](unsigned long code) { this->SetErrorCode(code); },
     [&]
     {
@@ -371,7 +372,7 @@ void vtkLacunaCTSeriesReader::Make(const lacuna::Ports& ports, vtkLacunaExecutio
         static_cast<double>(output->GetNumberOfPoints()) *
           static_cast<double>(lacuna::GetScalarSize(found.Type)));
       void* voxels =
-        vtkLacunaArrays::AddScalars(output, vtkLacunaScalarType::ToVTK(found.Type), ScalarsName)
+        lacuna::Arrays::AddScalars(output, lacuna::ArrayScalarType::ToVTK(found.Type), ScalarsName)
           ->GetVoidPointer(0);
       lacuna::PreferLargePages(voxels,
         static_cast<std::size_t>(output->GetNumberOfPoints()) * lacuna::GetScalarSize(found.Type));

@@ -23,7 +23,7 @@
  * - Enhanced (multi-frame) CT, deflated files, files without preamble and compressed pixels (RLE;
  *   JPEG, JPEG-LS, JPEG 2000 when built with GDCM) are read.
  *
- * Field data: `DirectionMatrix` (vtkLacunaVolumeDirection), `PatientPosition` (HFS, ...), `ConvolutionKernel`, `GantryTilt` (degrees, where one
+ * Field data: `DirectionMatrix` (lacuna::VolumeDirection), `PatientPosition` (HFS, ...), `ConvolutionKernel`, `GantryTilt` (degrees, where one
  * was corrected), `InterpolatedSlices` (indices along the third axis, where there are any),
  * `Provenance`. The patient's identity is copied only with KeepPatientIdentity; provenance has a
  * hash of the series' UID instead (64-bit FNV-1a of its text).
@@ -141,7 +141,7 @@ protected:
   ~vtkLacunaCTSeriesReader() override;
 
   void Announce(const lacuna::Ports& ports) override;
-  void Make(const lacuna::Ports& ports, vtkLacunaExecution& execution) override;
+  void Make(const lacuna::Ports& ports, lacuna::AlgorithmExecution& execution) override;
   std::string Parameters(int port) const override;
 
 private:

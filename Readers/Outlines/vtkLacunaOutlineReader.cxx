@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkLacunaOutlineReader.h"
 
+#include "lacunaArrays.h"
+#include "lacunaCoordinates.h"
 #include "lacunaMarkups.h"
 #include "lacunaOutlineFile.h"
 #include "lacunaOutlineTable.h"
 #include "lacunaParameterText.h"
 #include "lacunaPrintableText.h"
+#include "lacunaReading.h"
 #include "lacunaStructureSet.h"
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
 #include "vtkInformation.h"
 #include "vtkIntArray.h"
-#include "vtkLacunaArrays.h"
-#include "vtkLacunaCoordinates.h"
-#include "vtkLacunaReading.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkPoints.h"
@@ -54,9 +54,9 @@ void FillOutput(const lacuna::OutlineSet& set, vtkPolyData* output)
   }
   vtkNew<vtkPoints> points;
   points->SetDataTypeToDouble();
-  vtkLacunaArrays::SetNumberOfPoints(points, pointCount);
+  lacuna::Arrays::SetNumberOfPoints(points, pointCount);
   vtkNew<vtkCellArray> lines;
-  vtkLacunaArrays::Reserve(lines, count, pointCount + count);
+  lacuna::Arrays::Reserve(lines, count, pointCount + count);
   vtkNew<vtkIntArray> structures;
   vtkNew<vtkStringArray> names;
   vtkNew<vtkIntArray> numbers;
@@ -69,7 +69,7 @@ void FillOutput(const lacuna::OutlineSet& set, vtkPolyData* output)
   for (const auto& [array, name] : arrays)
   {
     array->SetName(name);
-    vtkLacunaArrays::SetNumberOfTuples(array, count);
+    lacuna::Arrays::SetNumberOfTuples(array, count);
     output->GetCellData()->AddArray(array);
   }
   vtkIdType next = 0;
@@ -121,7 +121,7 @@ int vtkLacunaOutlineReader::CanReadFile(const char* fileName)
 //------------------------------------------------------------------------------
 void vtkLacunaOutlineReader::Announce(const lacuna::Ports&)
 {
-  vtkLacunaReading::Run(
+  lacuna::Reading::Run(
     this->FileName, "outlines in a file (.mrk.json, .dcm, .csv)",
     [this](unsigned long code) { this->SetErrorCode(code); },
     [&]
@@ -135,9 +135,9 @@ void vtkLacunaOutlineReader::Announce(const lacuna::Ports&)
 }
 
 //------------------------------------------------------------------------------
-void vtkLacunaOutlineReader::Make(const lacuna::Ports& ports, vtkLacunaExecution&)
+void vtkLacunaOutlineReader::Make(const lacuna::Ports& ports, lacuna::AlgorithmExecution&)
 {
-  vtkLacunaReading::Run(
+  lacuna::Reading::Run(
     this->FileName, "", [this](unsigned long code) { this->SetErrorCode(code); },
     [&]
     {
@@ -146,7 +146,7 @@ void vtkLacunaOutlineReader::Make(const lacuna::Ports& ports, vtkLacunaExecution
       FillOutput(outlines, output);
       if (outlines.IsPatient)
       {
-        vtkLacunaCoordinates::Mark(output, vtkLacunaCoordinates::Patient);
+        lacuna::Coordinates::Mark(output, lacuna::Coordinates::Patient);
       }
       for (const std::string& warning : outlines.Warnings)
       {

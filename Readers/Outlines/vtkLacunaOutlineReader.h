@@ -20,7 +20,7 @@
  * - `SliceNumber` (int): -1 where it is not known
  * - `StructureColor` (unsigned char, 3 components), the active scalars
  *
- * Field data: `Coordinates` = Patient (vtkLacunaCoordinates) for markups and DICOM, which are in
+ * Field data: `Coordinates` = Patient (lacuna::Coordinates) for markups and DICOM, which are in
  * patient coordinates (LPS); `Provenance`, with a hash of the file's name. Nothing of the patient is
  * copied. What is left out is a warning. Errors set vtkErrorCode::FileNotFoundError or
  * FileFormatError.
@@ -55,7 +55,7 @@ protected:
   ~vtkLacunaOutlineReader() override;
 
   void Announce(const lacuna::Ports& ports) override;
-  void Make(const lacuna::Ports& ports, vtkLacunaExecution& execution) override;
+  void Make(const lacuna::Ports& ports, lacuna::AlgorithmExecution& execution) override;
   std::string Parameters(int port) const override;
 
 private:

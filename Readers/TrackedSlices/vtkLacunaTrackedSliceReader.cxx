@@ -1,29 +1,29 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkLacunaTrackedSliceReader.h"
 
+#include "lacunaArrayScalarType.h"
+#include "lacunaArrays.h"
+#include "lacunaFieldData.h"
 #include "lacunaMemory.h"
 #include "lacunaParameterText.h"
 #include "lacunaPrintableText.h"
 #include "lacunaPropertyRange.h"
+#include "lacunaProvenance.h"
+#include "lacunaReading.h"
+#include "lacunaSequenceFile.h"
 #include "lacunaSequenceFormat.h"
+#include "lacunaSequenceNames.h"
 #include "lacunaSequenceText.h"
 #include "lacunaSweep.h"
 #include "lacunaSweepReplay.h"
 #include "lacunaSweepTransforms.h"
+#include "lacunaTrackedSlices.h"
 #include "vtkDataArray.h"
 #include "vtkDataObject.h"
 #include "vtkFieldData.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
-#include "vtkLacunaArrays.h"
-#include "vtkLacunaFieldData.h"
-#include "vtkLacunaProvenance.h"
-#include "vtkLacunaReading.h"
-#include "vtkLacunaScalarType.h"
-#include "vtkLacunaSequenceFile.h"
-#include "vtkLacunaSequenceNames.h"
 #include "vtkLacunaSliceStream.h"
-#include "vtkLacunaTrackedSlices.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
@@ -68,7 +68,7 @@ void AddStrings(vtkDataObject* data, const std::string& name, const std::vector<
 
 struct vtkLacunaTrackedSliceReader::Sequence
 {
-  std::shared_ptr<vtkLacunaSequenceFile> File;
+  std::shared_ptr<lacuna::SequenceFile> File;
   std::unique_ptr<lacuna::SweepReplay> Replay; // null unless asked for
   vtkSmartPointer<vtkImageData> Fields;        // its field data are those of every output
   std::string Chain;                           // of transforms, for the provenance
@@ -113,7 +113,8 @@ double vtkLacunaTrackedSliceReader::GetMostBytes() const
     return this->MemoryLimit * mebibyte;
   }
   // ranks show the same slices, whatever memory their computers have
-  return vtkLacunaRanks().GetNumber() > 1 ? 4096 * mebibyte : lacuna::GetPhysicalMemory() / 4;
+  return lacuna::ControllerRanks().GetNumber() > 1 ? 4096 * mebibyte
+                                                   : lacuna::GetPhysicalMemory() / 4;
 }
 
 //------------------------------------------------------------------------------
@@ -121,11 +122,11 @@ void vtkLacunaTrackedSliceReader::OpenSequence(Sequence& sequence)
 {
   lacuna::RequireAtLeast(1, "FrameStride", this->FrameStride);
   lacuna::RequireAtLeast(0, "MemoryLimit", this->MemoryLimit);
-  sequence.File = std::make_shared<vtkLacunaSequenceFile>(
+  sequence.File = std::make_shared<lacuna::SequenceFile>(
     this->FileName, this->FrameRange, this->FrameStride, this->GetMostBytes());
   if (this->ReplayInTime)
   {
-    const vtkLacunaSequenceFile::Choice& stack = sequence.File->GetStack();
+    const lacuna::SequenceFile::Choice& stack = sequence.File->GetStack();
     sequence.Replay = std::make_unique<lacuna::SweepReplay>(
       lacuna::ReadTimestamps(sequence.File->Header), stack.First, stack.Stride, stack.Slices);
   }
@@ -140,14 +141,14 @@ void vtkLacunaTrackedSliceReader::Announce(const lacuna::Ports& ports)
   info->Remove(vtkStreamingDemandDrivenPipeline::TIME_STEPS());
   info->Remove(vtkStreamingDemandDrivenPipeline::TIME_RANGE());
   info->Remove(vtkLacunaSliceStream::STREAM());
-  vtkLacunaReading::Run(
+  lacuna::Reading::Run(
     this->FileName, "a tracked sequence file (.mha, .mhd, .nrrd, .nhdr)",
     [this](unsigned long code) { this->SetErrorCode(code); },
     [&]
     {
       auto sequence = std::make_unique<Sequence>();
       this->OpenSequence(*sequence);
-      const vtkLacunaSequenceFile& file = *sequence->File;
+      const lacuna::SequenceFile& file = *sequence->File;
       int extent[6];
       double origin[3];
       double spacing[3];
@@ -156,7 +157,7 @@ void vtkLacunaTrackedSliceReader::Announce(const lacuna::Ports& ports)
       info->Set(vtkDataObject::ORIGIN(), origin, 3);
       info->Set(vtkDataObject::SPACING(), spacing, 3);
       vtkDataObject::SetPointDataActiveScalarInfo(
-        info, vtkLacunaScalarType::ToVTK(file.Pixels->GetScalarType()), 1);
+        info, lacuna::ArrayScalarType::ToVTK(file.Pixels->GetScalarType()), 1);
       if (sequence->Replay)
       {
         const std::vector<double>& times = sequence->Replay->GetTimes();
@@ -222,7 +223,7 @@ void vtkLacunaTrackedSliceReader::MakeFieldData()
     {
       continue; // a transform is written for each frame
     }
-    if (name.find(vtkLacunaSequenceNames::ProvenancePrefix) == 0)
+    if (name.find(lacuna::SequenceNames::ProvenancePrefix) == 0)
     {
       steps.push_back(value);
       continue;
@@ -241,30 +242,30 @@ void vtkLacunaTrackedSliceReader::MakeFieldData()
   }
   for (const auto& [name, matrices] : sweep.Transforms)
   {
-    vtkLacunaFieldData::SetMatrices(output, name, matrices);
+    lacuna::FieldData::SetMatrices(output, name, matrices);
   }
   if (!sweep.ImageToProbe.empty())
   {
-    vtkLacunaFieldData::SetMatrices(
-      output, vtkLacunaTrackedSlices::ImageToProbeName, sweep.ImageToProbe);
+    lacuna::FieldData::SetMatrices(
+      output, lacuna::TrackedSlices::ImageToProbeName, sweep.ImageToProbe);
   }
   if (!header.PosesOnly)
   {
     const bool signal = header.ImageType.find("RF_") == 0; // else grey levels, also of colours
     AddStrings(
-      output, vtkLacunaSequenceNames::ImageType, { signal ? header.ImageType : "BRIGHTNESS" });
-    AddStrings(output, vtkLacunaSequenceNames::Orientation, { header.Flips.Lines ? "FM" : "MFA" });
+      output, lacuna::SequenceNames::ImageType, { signal ? header.ImageType : "BRIGHTNESS" });
+    AddStrings(output, lacuna::SequenceNames::Orientation, { header.Flips.Lines ? "FM" : "MFA" });
   }
-  AddStrings(output, vtkLacunaSequenceNames::Frames, { sweep.ImageFrame, options.ReferenceFrame });
-  vtkLacunaTrackedSlices::Write(
+  AddStrings(output, lacuna::SequenceNames::Frames, { sweep.ImageFrame, options.ReferenceFrame });
+  lacuna::TrackedSlices::Write(
     output, sweep.ImageToReference, sweep.Timestamps, sweep.Status, sweep.FrameNumbers);
   if (!this->Preview.empty())
   {
-    AddStrings(output, vtkLacunaTrackedSlices::PreviewName, { this->Preview });
+    AddStrings(output, lacuna::TrackedSlices::PreviewName, { this->Preview });
   }
   if (!steps.empty()) // the base goes on with them
   {
-    AddStrings(output, vtkLacunaProvenance::ArrayName, steps);
+    AddStrings(output, lacuna::Provenance::ArrayName, steps);
   }
   this->Opened->Chain = sweep.Chain;
 
@@ -293,15 +294,15 @@ void vtkLacunaTrackedSliceReader::MakeFieldData()
 //------------------------------------------------------------------------------
 // Slices of the stack from index shown on are blank.
 void vtkLacunaTrackedSliceReader::ReadPixels(
-  vtkImageData* output, int shown, vtkLacunaExecution& execution)
+  vtkImageData* output, int shown, lacuna::AlgorithmExecution& execution)
 {
   Sequence& sequence = *this->Opened;
   int extent[6];
   output->GetExtent(extent);
-  const int type = vtkLacunaScalarType::ToVTK(sequence.File->Pixels->GetScalarType());
+  const int type = lacuna::ArrayScalarType::ToVTK(sequence.File->Pixels->GetScalarType());
   lacuna::RequireMemory("the pixels of " + std::to_string(extent[5] - extent[4] + 1) + " slices",
     static_cast<double>(output->GetNumberOfPoints()) * vtkDataArray::GetDataTypeSize(type));
-  vtkDataArray* scalars = vtkLacunaArrays::AddScalars(output, type, IntensityName);
+  vtkDataArray* scalars = lacuna::Arrays::AddScalars(output, type, IntensityName);
   auto* pixels = static_cast<unsigned char*>(scalars->GetVoidPointer(0));
 
   // A replay goes on where it was.
@@ -334,21 +335,22 @@ void vtkLacunaTrackedSliceReader::ReadPixels(
 // Slices that have not been taken yet have no image.
 void vtkLacunaTrackedSliceReader::HideSlices(vtkImageData* output, int shown) const
 {
-  const vtkLacunaSequenceFile::Choice& stack = this->Opened->File->GetStack();
+  const lacuna::SequenceFile::Choice& stack = this->Opened->File->GetStack();
   const vtkIdType last = stack.First + (shown - 1) * stack.Stride;
-  vtkDataArray* all = output->GetFieldData()->GetArray(vtkLacunaTrackedSlices::SliceStatusName);
+  vtkDataArray* all = output->GetFieldData()->GetArray(lacuna::TrackedSlices::SliceStatusName);
   vtkNew<vtkUnsignedCharArray> status;
-  vtkLacunaArrays::Copy(all, status);
+  lacuna::Arrays::Copy(all, status);
   for (vtkIdType i = last + 1; i < status->GetNumberOfTuples(); ++i)
   {
     status->SetValue(
-      i, static_cast<unsigned char>(status->GetValue(i) | vtkLacunaTrackedSlices::ImageInvalid));
+      i, static_cast<unsigned char>(status->GetValue(i) | lacuna::TrackedSlices::ImageInvalid));
   }
   output->GetFieldData()->AddArray(status);
 }
 
 //------------------------------------------------------------------------------
-void vtkLacunaTrackedSliceReader::Make(const lacuna::Ports& ports, vtkLacunaExecution& execution)
+void vtkLacunaTrackedSliceReader::Make(
+  const lacuna::Ports& ports, lacuna::AlgorithmExecution& execution)
 {
   vtkInformation* info = ports.GetOutputInformation();
   auto* output = ports.GetOutput<vtkImageData>();
@@ -364,7 +366,7 @@ void vtkLacunaTrackedSliceReader::Make(const lacuna::Ports& ports, vtkLacunaExec
     output->GetInformation()->Set(
       vtkDataObject::DATA_TIME_STEP(), this->Opened->Replay->GetTimeBefore(time));
   }
-  vtkLacunaReading::Run(
+  lacuna::Reading::Run(
     this->FileName, "", [this](unsigned long code) { this->SetErrorCode(code); },
     [&]
     {

@@ -6,7 +6,7 @@
  * Reads MetaImage and NRRD sequences (.igs.mha, .mha, .mhd with .raw or .zraw, .nrrd, .nhdr with
  * its data file) as PLUS, 3D Slicer and their kin write them: a stack of slices, raw, compressed
  * (zlib, gzip) or as text, of any element type, with named fields for each frame. The content tells
- * the format, not the name. The output is tracked slices, see vtkLacunaTrackedSlices for the
+ * the format, not the name. The output is tracked slices, see lacuna::TrackedSlices for the
  * contract:
  *
  * - vtkImageData of columns x rows x slices; point scalars `Intensity` (grey levels in the file's
@@ -63,7 +63,7 @@
  * compressed ones all up to the last slice asked for. Errors set vtkErrorCode::FileFormatError or
  * FileNotFoundError.
  *
- * @sa vtkLacunaTrackedSlices
+ * @sa lacuna::TrackedSlices
  */
 #ifndef vtkLacunaTrackedSliceReader_h
 #define vtkLacunaTrackedSliceReader_h
@@ -75,7 +75,10 @@
 #include <memory> // for std::unique_ptr
 #include <string> // for std::string
 
-class vtkLacunaExecution;
+namespace lacuna
+{
+class AlgorithmExecution;
+}
 
 class VTKLACUNAREADERSTRACKEDSLICES_EXPORT vtkLacunaTrackedSliceReader
   : public vtkLacunaAlgorithmOf(vtkImageAlgorithm)
@@ -165,7 +168,7 @@ protected:
   ~vtkLacunaTrackedSliceReader() override;
 
   void Announce(const lacuna::Ports& ports) override;
-  void Make(const lacuna::Ports& ports, vtkLacunaExecution& execution) override;
+  void Make(const lacuna::Ports& ports, lacuna::AlgorithmExecution& execution) override;
   std::string Parameters(int port) const override;
 
 private:
@@ -175,7 +178,7 @@ private:
   struct Sequence;
   void OpenSequence(Sequence& sequence);
   double GetMostBytes() const;
-  void ReadPixels(vtkImageData* output, int shown, vtkLacunaExecution& execution);
+  void ReadPixels(vtkImageData* output, int shown, lacuna::AlgorithmExecution& execution);
   void HideSlices(vtkImageData* output, int shown) const;
   void MakeFieldData();
 

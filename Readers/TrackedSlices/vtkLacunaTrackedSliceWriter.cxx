@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkLacunaTrackedSliceWriter.h"
 
+#include "lacunaAlgorithmExecution.h"
 #include "lacunaOutputFile.h"
 #include "lacunaPrintableText.h"
+#include "lacunaSequenceData.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
 #include "vtkLacunaAlgorithm.h"
-#include "vtkLacunaExecution.h"
-#include "vtkLacunaSequenceContent.h"
 #include "vtkLacunaSliceStream.h"
 #include "vtkLogger.h"
 #include "vtkObjectFactory.h"
@@ -82,9 +82,9 @@ std::string vtkLacunaTrackedSliceWriter::DescribeNeighbour(const lacuna::Sequenc
 //------------------------------------------------------------------------------
 void vtkLacunaTrackedSliceWriter::WriteStack(vtkImageData* stack)
 {
-  vtkLacunaExecution execution(this);
+  lacuna::AlgorithmExecution execution(this);
   const lacuna::SequenceKind kind(this->FileName, this->CompressionLevel > 0);
-  const vtkLacunaSequenceContent content(
+  const lacuna::SequenceData content(
     stack, kind, vtkLacunaSliceStream::Find(this), this->KeepPatientIdentity, execution);
   const std::string neighbour = this->DescribeNeighbour(kind);
   this->FileSize =

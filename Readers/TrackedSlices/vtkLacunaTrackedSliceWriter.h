@@ -3,7 +3,7 @@
  * @class vtkLacunaTrackedSliceWriter
  * @brief writes tracked slices as a sequence file
  *
- * Writes a stack of tracked slices (contract vtkLacunaTrackedSlices) as a sequence that PLUS, 3D
+ * Writes a stack of tracked slices (contract lacuna::TrackedSlices) as a sequence that PLUS, 3D
  * Slicer and vtkLacunaTrackedSliceReader read; the extension of FileName chooses the kind: .mha,
  * .mhd (with .raw or .zraw), .nrrd, .nhdr (with .raw or .raw.gz). What was read comes back:
  *

@@ -1,12 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkLacunaVolumeReader.h"
 
+#include "lacunaArrayScalarType.h"
+#include "lacunaArrays.h"
+#include "lacunaCoordinates.h"
 #include "lacunaMemory.h"
 #include "lacunaNiftiVolume.h"
 #include "lacunaParameterText.h"
 #include "lacunaPixelSource.h"
 #include "lacunaPrintableText.h"
+#include "lacunaReading.h"
 #include "lacunaSequenceText.h"
+#include "lacunaVolumeDirection.h"
 #include "lacunaVolumeGrid.h"
 #include "vtkDataArray.h"
 #include "vtkDataObject.h"
@@ -14,11 +19,6 @@
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationIntegerRequestKey.h"
-#include "vtkLacunaArrays.h"
-#include "vtkLacunaCoordinates.h"
-#include "vtkLacunaReading.h"
-#include "vtkLacunaScalarType.h"
-#include "vtkLacunaVolumeDirection.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
 #include "vtkSmartPointer.h"
@@ -121,7 +121,7 @@ void vtkLacunaVolumeReader::OpenVolume(Content& content)
 void vtkLacunaVolumeReader::Announce(const lacuna::Ports& ports)
 {
   this->Opened.reset();
-  vtkLacunaReading::Run(
+  lacuna::Reading::Run(
     this->FileName, "a volume in a file (.mha, .mhd, .nrrd, .nhdr, .nii, .nii.gz)",
     [this](unsigned long code) { this->SetErrorCode(code); },
     [&]
@@ -153,7 +153,8 @@ void vtkLacunaVolumeReader::AnnounceGrid(vtkInformation* info) const
   info->Set(vtkDataObject::DIRECTION(), direction, 9);
   // ranks share out whole slices
   info->Set(vtkExtentTranslator::UPDATE_SPLIT_MODE(), vtkExtentTranslator::Z_SLAB_MODE);
-  vtkDataObject::SetPointDataActiveScalarInfo(info, vtkLacunaScalarType::ToVTK(this->Opened->Type),
+  vtkDataObject::SetPointDataActiveScalarInfo(info,
+    lacuna::ArrayScalarType::ToVTK(this->Opened->Type),
     static_cast<int>(this->Opened->File.Slices.Channels));
 }
 
@@ -161,10 +162,10 @@ void vtkLacunaVolumeReader::AnnounceGrid(vtkInformation* info) const
 void vtkLacunaVolumeReader::AddFieldData(vtkImageData* output)
 {
   Content& content = *this->Opened;
-  vtkLacunaVolumeDirection::Record(output);
+  lacuna::VolumeDirection::Record(output);
   if (content.File.IsPatient)
   {
-    vtkLacunaCoordinates::Mark(output, vtkLacunaCoordinates::Patient);
+    lacuna::Coordinates::Mark(output, lacuna::Coordinates::Patient);
   }
   if (!content.Warned)
   {
@@ -177,7 +178,7 @@ void vtkLacunaVolumeReader::AddFieldData(vtkImageData* output)
 }
 
 //------------------------------------------------------------------------------
-void vtkLacunaVolumeReader::Make(const lacuna::Ports& ports, vtkLacunaExecution& execution)
+void vtkLacunaVolumeReader::Make(const lacuna::Ports& ports, lacuna::AlgorithmExecution& execution)
 {
   Content& content = *this->Opened;
   vtkInformation* info = ports.GetOutputInformation();
@@ -188,7 +189,7 @@ void vtkLacunaVolumeReader::Make(const lacuna::Ports& ports, vtkLacunaExecution&
   output->SetDirectionMatrix(info->Get(vtkDataObject::DIRECTION()));
   output->SetExtent(extent.data());
   this->AddFieldData(output);
-  vtkLacunaReading::Run(
+  lacuna::Reading::Run(
     this->FileName, "", [this](unsigned long code) { this->SetErrorCode(code); },
     [&]
     {
@@ -199,10 +200,10 @@ void vtkLacunaVolumeReader::Make(const lacuna::Ports& ports, vtkLacunaExecution&
           static_cast<double>(content.Pixels->GetFrameSize()));
       vtkSmartPointer<vtkDataArray> scalars;
       scalars.TakeReference(
-        vtkDataArray::CreateDataArray(vtkLacunaScalarType::ToVTK(content.Type)));
+        vtkDataArray::CreateDataArray(lacuna::ArrayScalarType::ToVTK(content.Type)));
       scalars->SetName(ScalarsName);
       scalars->SetNumberOfComponents(static_cast<int>(channels));
-      vtkLacunaArrays::SetNumberOfTuples(scalars, output->GetNumberOfPoints());
+      lacuna::Arrays::SetNumberOfTuples(scalars, output->GetNumberOfPoints());
       lacuna::ReadVolume(
         content.File, content.Grid, *content.Pixels, extent, scalars->GetVoidPointer(0), execution);
       output->GetPointData()->SetScalars(scalars);

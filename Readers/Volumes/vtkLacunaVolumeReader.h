@@ -19,8 +19,8 @@
  * 0.05 mm), several volumes in a file, missing distances and contradictions are errors. Values are
  * scl_slope * stored + scl_inter (vtk type: lacuna::GetVolumeType).
  *
- * Field data: `DirectionMatrix` (vtkLacunaVolumeDirection), `Coordinates` = Patient where the file
- * says so (vtkLacunaCoordinates: NRRD with one of the spaces above, NIfTI with the code 1 or 2),
+ * Field data: `DirectionMatrix` (lacuna::VolumeDirection), `Coordinates` = Patient where the file
+ * says so (lacuna::Coordinates: NRRD with one of the spaces above, NIfTI with the code 1 or 2),
  * `Provenance`, with a hash of the file's name, which may be the patient's.
  *
  * Requested extents are honoured. What hinders a volume is an error of RequestData; until then the
@@ -73,7 +73,7 @@ protected:
   ~vtkLacunaVolumeReader() override;
 
   void Announce(const lacuna::Ports& ports) override;
-  void Make(const lacuna::Ports& ports, vtkLacunaExecution& execution) override;
+  void Make(const lacuna::Ports& ports, lacuna::AlgorithmExecution& execution) override;
   std::string Parameters(int port) const override;
 
 private:

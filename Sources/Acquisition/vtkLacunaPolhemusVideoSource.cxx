@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkLacunaPolhemusVideoSource.h"
 
+#include "lacunaLiveSweep.h"
 #include "lacunaPrintableText.h"
+#include "lacunaTrackedSlices.h"
 #include "vtkDataObject.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
-#include "vtkLacunaLiveSweep.h"
-#include "vtkLacunaTrackedSlices.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
@@ -49,12 +49,12 @@ vtkStandardNewMacro(vtkLacunaPolhemusVideoSource);
 
 //------------------------------------------------------------------------------
 vtkLacunaPolhemusVideoSource::vtkLacunaPolhemusVideoSource()
-  : Now(std::make_unique<vtkLacunaLiveSweep>())
+  : Now(std::make_unique<lacuna::LiveSweep>())
 {
   this->Sharing = lacuna::Share::FirstRank;
   this->SetNumberOfInputPorts(0);
   this->SetNumberOfOutputPorts(2);
-  this->Now->Newest = vtkLacunaSliceStack::MakeBlank();
+  this->Now->Newest = lacuna::GrowingStack::MakeBlank();
 }
 
 //------------------------------------------------------------------------------
@@ -108,7 +108,7 @@ void vtkLacunaPolhemusVideoSource::Stop()
 //------------------------------------------------------------------------------
 void vtkLacunaPolhemusVideoSource::Clear()
 {
-  vtkLacunaLiveSweep& now = *this->Now;
+  lacuna::LiveSweep& now = *this->Now;
   this->Stop(); // the last slices, of which it is to be said whether they are on the disk
   try
   {
@@ -146,7 +146,7 @@ void vtkLacunaPolhemusVideoSource::Clear()
 // for which there is no memory are kept for the next time.
 bool vtkLacunaPolhemusVideoSource::TakeOver()
 {
-  vtkLacunaLiveSweep& now = *this->Now;
+  lacuna::LiveSweep& now = *this->Now;
   if (!now.StackIsOfOthers)
   {
     for (lacuna::AcquiredSlice& slice : now.Acquisition->TakeSlices())
@@ -164,11 +164,11 @@ bool vtkLacunaPolhemusVideoSource::TakeOver()
     const std::int64_t most = std::max<std::int64_t>(now.LimitBytes / size, 1);
     try
     {
-      now.Stack = std::make_unique<vtkLacunaSliceStack>(frame, most * size);
+      now.Stack = std::make_unique<lacuna::GrowingStack>(frame, most * size);
     }
     catch (const std::bad_alloc&) // a system that gives no memory in advance
     {
-      now.Stack = std::make_unique<vtkLacunaSliceStack>(frame, 0);
+      now.Stack = std::make_unique<lacuna::GrowingStack>(frame, 0);
     }
   }
   for (; !now.Taken.empty(); now.Taken.pop_front())
@@ -182,7 +182,7 @@ bool vtkLacunaPolhemusVideoSource::TakeOver()
     return grows;
   }
   now.NewestNumber = live->Slice.FrameNumber;
-  now.Newest = std::make_unique<vtkLacunaSliceStack>(live->Sweep, 0);
+  now.Newest = std::make_unique<lacuna::GrowingStack>(live->Sweep, 0);
   now.Newest->Append(live->Slice);
   return this->LiveDisplay || grows;
 }
@@ -242,12 +242,12 @@ void vtkLacunaPolhemusVideoSource::CollectNews()
 //------------------------------------------------------------------------------
 void vtkLacunaPolhemusVideoSource::Announce(const lacuna::Ports& ports)
 {
-  vtkLacunaLiveSweep& now = *this->Now;
+  lacuna::LiveSweep& now = *this->Now;
   if (now.Acquisition)
   {
     this->Configure();
   }
-  const auto set = [&](int port, const vtkLacunaSliceStack* stack)
+  const auto set = [&](int port, const lacuna::GrowingStack* stack)
   {
     AnnounceStack(ports.GetOutputInformation(port),
       stack ? stack->GetWindow() : std::array<int, 4>{},
@@ -258,9 +258,9 @@ void vtkLacunaPolhemusVideoSource::Announce(const lacuna::Ports& ports)
 }
 
 //------------------------------------------------------------------------------
-void vtkLacunaPolhemusVideoSource::Make(const lacuna::Ports& ports, vtkLacunaExecution&)
+void vtkLacunaPolhemusVideoSource::Make(const lacuna::Ports& ports, lacuna::AlgorithmExecution&)
 {
-  vtkLacunaLiveSweep& now = *this->Now;
+  lacuna::LiveSweep& now = *this->Now;
   now.ToldCapturing = now.GetState().Capturing;
   for (const std::string& message : std::exchange(now.News, {}))
   {
@@ -273,11 +273,11 @@ void vtkLacunaPolhemusVideoSource::Make(const lacuna::Ports& ports, vtkLacunaExe
       throw std::runtime_error("Devices are driven by one process only, not by each of several: "
                                "run a server without MPI where they are plugged in");
     }
-    const vtkLacunaSliceStack* stack = port == 0 ? now.Stack.get() : now.Newest.get();
+    const lacuna::GrowingStack* stack = port == 0 ? now.Stack.get() : now.Newest.get();
     auto* output = ports.GetOutput<vtkImageData>(port);
     if (port == 1 || now.ToldCapturing) // the newest frame may get a pose
     {
-      vtkLacunaTrackedSlices::MarkAsGrowing(output);
+      lacuna::TrackedSlices::MarkAsGrowing(output);
     }
     if (stack)
     {
@@ -296,7 +296,7 @@ void vtkLacunaPolhemusVideoSource::Make(const lacuna::Ports& ports, vtkLacunaExe
 //------------------------------------------------------------------------------
 std::string vtkLacunaPolhemusVideoSource::Parameters(int port) const
 {
-  const vtkLacunaLiveSweep& now = *this->Now;
+  const lacuna::LiveSweep& now = *this->Now;
   if (!(port == 0 ? now.Stack : now.Newest))
   {
     return {};

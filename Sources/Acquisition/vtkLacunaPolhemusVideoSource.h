@@ -14,7 +14,7 @@
  * modified; an update gives it. Changed properties are heeded at the next update: those of the
  * devices (vtkLacunaLiveDevices.h) reopen them, during a capture only one that does not work.
  *
- * Output port 0: tracked slices (vtkLacunaTrackedSlices.h) of the sweep, unsigned char, empty before
+ * Output port 0: tracked slices (lacunaTrackedSlices.h) of the sweep, unsigned char, empty before
  * the first slice. Field data, one tuple a slice: ImageToReference (absent while there is no
  * calibration), ProbeToTracker and TrackerToReference (double, 16), Timestamp (s since Connect),
  * SliceStatus, FrameNumber (of the video's frames since Connect), Residual (s from the slice's
@@ -38,7 +38,10 @@
 #include <memory> // for std::unique_ptr
 #include <string> // for std::string
 
-struct vtkLacunaLiveSweep;
+namespace lacuna
+{
+struct LiveSweep;
+}
 
 class VTKLACUNASOURCESACQUISITION_EXPORT vtkLacunaPolhemusVideoSource : public vtkLacunaLiveDevices
 {
@@ -188,7 +191,7 @@ protected:
   ~vtkLacunaPolhemusVideoSource() override;
   int FillOutputPortInformation(int port, vtkInformation* info) override;
   void Announce(const lacuna::Ports& ports) override;
-  void Make(const lacuna::Ports& ports, vtkLacunaExecution& execution) override;
+  void Make(const lacuna::Ports& ports, lacuna::AlgorithmExecution& execution) override;
   std::string Parameters(int port) const override;
 
 private:
@@ -217,6 +220,6 @@ private:
   char* RecordFileName = nullptr;
   int RecordCompression = 0;
   bool LiveDisplay = true;
-  std::unique_ptr<vtkLacunaLiveSweep> Now;
+  std::unique_ptr<lacuna::LiveSweep> Now;
 };
 #endif

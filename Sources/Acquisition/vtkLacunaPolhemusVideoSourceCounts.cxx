@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What vtkLacunaPolhemusVideoSource tells of its state, in figures and in words.
+#include "lacunaLiveSweep.h"
 #include "lacunaPrintableText.h"
-#include "vtkLacunaLiveSweep.h"
 #include "vtkLacunaPolhemusVideoSource.h"
 
 #include <algorithm>
@@ -162,7 +162,7 @@ double vtkLacunaPolhemusVideoSource::GetMemoryLimitNow() const
 // What is to be done with slices before others can be taken; empty: nothing.
 std::string vtkLacunaPolhemusVideoSource::DescribeKept() const
 {
-  const vtkLacunaLiveSweep& now = *this->Now;
+  const lacuna::LiveSweep& now = *this->Now;
   if (!now.StackIsOfOthers)
   {
     return {};
@@ -176,12 +176,12 @@ std::string vtkLacunaPolhemusVideoSource::DescribeKept() const
 //------------------------------------------------------------------------------
 const char* vtkLacunaPolhemusVideoSource::GetMessage()
 {
-  vtkLacunaLiveSweep& now = *this->Now;
+  lacuna::LiveSweep& now = *this->Now;
   std::string text = now.Trouble;
   const auto add = [&text](const std::string& line)
   { text += (text.empty() || line.empty() ? "" : "\n") + line; };
   add(now.Acquisition ? "" : "The devices are not open: Connect, or Start");
-  add(this->DevicesWait() ? vtkLacunaLiveSweep::WaitingText : "");
+  add(this->DevicesWait() ? lacuna::LiveSweep::WaitingText : "");
   add(this->ButtonStarts && now.Acquisition && !now.Trouble.empty()
       ? "Mend that before you start; the button does nothing now"
       : "");

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // How vtkLacunaPolhemusVideoSource opens its devices and makes its acquisition what the properties say.
+#include "lacunaLiveSweep.h"
 #include "lacunaParameterText.h"
 #include "lacunaPrintableText.h"
 #include "lacunaProbeFrames.h"
-#include "vtkLacunaLiveSweep.h"
 #include "vtkLacunaPolhemusVideoSource.h"
 
 #include <cstdint>
@@ -50,7 +50,7 @@ std::string vtkLacunaPolhemusVideoSource::DescribeRules() const
 //------------------------------------------------------------------------------
 void vtkLacunaPolhemusVideoSource::Open()
 {
-  vtkLacunaLiveSweep& now = *this->Now;
+  lacuna::LiveSweep& now = *this->Now;
   this->Close(); // ports are free for the next
   now.Acquisition = std::make_unique<lacuna::SweepAcquisition>(
     this->MakeDevices(now.GetClock()), lacuna::AcquisitionRules(), now.GetClock());
@@ -65,7 +65,7 @@ void vtkLacunaPolhemusVideoSource::Open()
 // The slices stay, and what is told of them.
 void vtkLacunaPolhemusVideoSource::Close()
 {
-  vtkLacunaLiveSweep& now = *this->Now;
+  lacuna::LiveSweep& now = *this->Now;
   if (!now.Acquisition)
   {
     return;
@@ -91,7 +91,7 @@ void vtkLacunaPolhemusVideoSource::Close()
 // Whether others were chosen.
 bool vtkLacunaPolhemusVideoSource::DevicesDiffer() const
 {
-  const vtkLacunaLiveSweep& now = *this->Now;
+  const lacuna::LiveSweep& now = *this->Now;
   return this->DescribeTracker() != now.Tracker || this->DescribeVideo() != now.Video ||
     this->DescribeCrop() != now.Crop;
 }
@@ -100,7 +100,7 @@ bool vtkLacunaPolhemusVideoSource::DevicesDiffer() const
 // And a capture does not change them.
 bool vtkLacunaPolhemusVideoSource::DevicesWait() const
 {
-  const vtkLacunaLiveSweep& now = *this->Now;
+  const lacuna::LiveSweep& now = *this->Now;
   return now.Acquisition && this->DevicesDiffer() && now.Acquisition->GetState().Capturing;
 }
 
@@ -109,7 +109,7 @@ bool vtkLacunaPolhemusVideoSource::DevicesWait() const
 // back by another name, a wrong baud rate.
 void vtkLacunaPolhemusVideoSource::ReplaceBrokenDevices()
 {
-  vtkLacunaLiveSweep& now = *this->Now;
+  lacuna::LiveSweep& now = *this->Now;
   const lacuna::AcquisitionState state = now.GetState();
   if (!state.Capturing)
   {
@@ -131,12 +131,12 @@ void vtkLacunaPolhemusVideoSource::ReplaceBrokenDevices()
 // Makes the acquisition what the properties say; an error says why it cannot be, once.
 void vtkLacunaPolhemusVideoSource::Configure()
 {
-  vtkLacunaLiveSweep& now = *this->Now;
+  lacuna::LiveSweep& now = *this->Now;
   this->ReplaceBrokenDevices();
   const bool wait = this->DevicesWait();
   if (wait && now.Subjects.try_emplace("devices", 0).second)
   {
-    vtkWarningMacro(<< vtkLacunaLiveSweep::WaitingText);
+    vtkWarningMacro(<< lacuna::LiveSweep::WaitingText);
   }
   const bool reopen = !now.Acquisition || (this->DevicesDiffer() && !wait);
   const std::string calibration = Text(this->CalibrationFileName);

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkLacunaIncompleteShape.h"
 
+#include "lacunaArrays.h"
+#include "lacunaFieldData.h"
 #include "lacunaIncompleteShape.h"
 #include "lacunaMemory.h"
 #include "lacunaParameterText.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
-#include "vtkLacunaArrays.h"
-#include "vtkLacunaFieldData.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
@@ -73,7 +73,8 @@ void vtkLacunaIncompleteShape::Announce(const lacuna::Ports& ports)
 }
 
 //------------------------------------------------------------------------------
-void vtkLacunaIncompleteShape::Make(const lacuna::Ports& ports, vtkLacunaExecution& execution)
+void vtkLacunaIncompleteShape::Make(
+  const lacuna::Ports& ports, lacuna::AlgorithmExecution& execution)
 {
   const lacuna::IncompleteShape shape = this->MakeShape();
   const std::array<int, 3> n = shape.GetDimensions();
@@ -88,11 +89,11 @@ void vtkLacunaIncompleteShape::Make(const lacuna::Ports& ports, vtkLacunaExecuti
   output->SetDimensions(n.data());
   vtkNew<vtkUnsignedCharArray> data;
   data->SetName("Data");
-  vtkLacunaArrays::SetNumberOfTuples(data, static_cast<vtkIdType>(voxels.size()));
+  lacuna::Arrays::SetNumberOfTuples(data, static_cast<vtkIdType>(voxels.size()));
   std::copy(voxels.begin(), voxels.end(), data->GetPointer(0));
   output->GetPointData()->SetScalars(data); // the whole, since what is missing is chosen from it
   const double unit = shape.IsFlat() ? 1 : 0.001;
-  vtkLacunaFieldData::Set(output, "CompleteVolume", { unit * shape.GetContent() }, 1);
+  lacuna::FieldData::Set(output, "CompleteVolume", { unit * shape.GetContent() }, 1);
 }
 
 //------------------------------------------------------------------------------

@@ -103,7 +103,7 @@ protected:
   vtkLacunaIncompleteShape();
   ~vtkLacunaIncompleteShape() override;
   void Announce(const lacuna::Ports& ports) override;
-  void Make(const lacuna::Ports& ports, vtkLacunaExecution& execution) override;
+  void Make(const lacuna::Ports& ports, lacuna::AlgorithmExecution& execution) override;
   std::string Parameters(int port) const override;
 
   int Shape = CIRCLE;

@@ -1,23 +1,23 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkLacunaPhantomSweep.h"
 
+#include "lacunaArrayScalarType.h"
+#include "lacunaArrays.h"
+#include "lacunaFieldData.h"
 #include "lacunaMemory.h"
 #include "lacunaParameterText.h"
 #include "lacunaPhantomScene.h"
 #include "lacunaPhantomSweep.h"
 #include "lacunaProbeMotion.h"
+#include "lacunaTrackedSlices.h"
+#include "lacunaVersionCompat.h"
+#include "lacunaVolumeDirection.h"
 #include "lacunaVolumeScene.h"
 #include "vtkAlgorithmOutput.h"
 #include "vtkDataArray.h"
 #include "vtkFloatArray.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
-#include "vtkLacunaArrays.h"
-#include "vtkLacunaFieldData.h"
-#include "vtkLacunaScalarType.h"
-#include "vtkLacunaTrackedSlices.h"
-#include "vtkLacunaVersionCompat.h"
-#include "vtkLacunaVolumeDirection.h"
 #include "vtkMatrix4x4.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
@@ -54,13 +54,13 @@ std::unique_ptr<lacuna::PhantomScene> MakeVolumeScene(
 
 std::unique_ptr<lacuna::PhantomScene> MakeScene(vtkImageData* volume)
 {
-  vtkLacunaVolumeDirection::Check(volume);
+  lacuna::VolumeDirection::Check(volume);
   vtkDataArray* scalars = volume->GetPointData()->GetScalars();
   if (!scalars || volume->GetNumberOfPoints() == 0)
   {
     throw std::runtime_error("the input volume has no active point scalars to image");
   }
-  return lacuna::DispatchScalars(vtkLacunaScalarType::Get(scalars), scalars->GetVoidPointer(0),
+  return lacuna::DispatchScalars(lacuna::ArrayScalarType::Get(scalars), scalars->GetVoidPointer(0),
     [&](const auto* voxels) { return MakeVolumeScene(voxels, scalars, volume); });
 }
 }
@@ -182,13 +182,13 @@ void vtkLacunaPhantomSweep::Announce(const lacuna::Ports& ports)
   info->Set(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), extent, 6);
   info->Set(vtkDataObject::ORIGIN(), 0.0, 0.0, 0.0);
   info->Set(vtkDataObject::SPACING(), 1.0, 1.0, 1.0);
-  vtkLacunaVolumeDirection::AnnounceAlongAxes(info);
+  lacuna::VolumeDirection::AnnounceAlongAxes(info);
   vtkDataObject::SetPointDataActiveScalarInfo(
     info, this->OutputScalarType == FLOAT ? VTK_FLOAT : VTK_UNSIGNED_CHAR, 1);
 }
 
 //------------------------------------------------------------------------------
-void vtkLacunaPhantomSweep::Make(const lacuna::Ports& ports, vtkLacunaExecution& execution)
+void vtkLacunaPhantomSweep::Make(const lacuna::Ports& ports, lacuna::AlgorithmExecution& execution)
 {
   auto* volume = ports.GetInput<vtkImageData>(); // a slice may cut through any part of it
   if (volume && volume->GetNumberOfPoints() == 0)
@@ -212,7 +212,7 @@ void vtkLacunaPhantomSweep::Make(const lacuna::Ports& ports, vtkLacunaExecution&
   output->SetOrigin(0, 0, 0);
   output->SetSpacing(1, 1, 1);
   output->SetExtent(extent.data());
-  vtkDataArray* scalars = vtkLacunaArrays::AddScalars(
+  vtkDataArray* scalars = lacuna::Arrays::AddScalars(
     output, this->OutputScalarType == FLOAT ? VTK_FLOAT : VTK_UNSIGNED_CHAR, "Intensity");
 
   const lacuna::Matrix4 imageToProbe =
@@ -246,11 +246,10 @@ void vtkLacunaPhantomSweep::Make(const lacuna::Ports& ports, vtkLacunaExecution&
     times[i] = i / SlicesPerSecond;
     frames[i] = i;
   }
-  vtkLacunaTrackedSlices::Write(output, imagePoses, times,
-    std::vector<unsigned char>(this->NumberOfSlices, vtkLacunaTrackedSlices::Valid), frames);
-  vtkLacunaFieldData::SetMatrices(output, "ProbeToReference", probePoses);
-  vtkLacunaFieldData::SetMatrices(
-    output, vtkLacunaTrackedSlices::ImageToProbeName, { imageToProbe });
+  lacuna::TrackedSlices::Write(output, imagePoses, times,
+    std::vector<unsigned char>(this->NumberOfSlices, lacuna::TrackedSlices::Valid), frames);
+  lacuna::FieldData::SetMatrices(output, "ProbeToReference", probePoses);
+  lacuna::FieldData::SetMatrices(output, lacuna::TrackedSlices::ImageToProbeName, { imageToProbe });
 }
 
 //------------------------------------------------------------------------------
@@ -292,15 +291,15 @@ bool vtkLacunaPhantomSweep::AddTruth(vtkImageData* grid)
     lacuna::RequireMemory("array Truth", 4.0 * static_cast<double>(grid->GetNumberOfPoints()));
     vtkNew<vtkFloatArray> truth;
     truth->SetName("Truth");
-    vtkLacunaArrays::SetNumberOfTuples(truth, grid->GetNumberOfPoints());
+    lacuna::Arrays::SetNumberOfTuples(truth, grid->GetNumberOfPoints());
     std::array<int, 3> dimensions;
     grid->GetDimensions(dimensions.data());
     const int* extent = grid->GetExtent();
     const lacuna::Matrix4 toPhysical(*grid->GetIndexToPhysicalMatrix()->Element);
     const lacuna::Vec3 first{ static_cast<double>(extent[0]), static_cast<double>(extent[2]),
       static_cast<double>(extent[4]) };
-    vtkLacunaForgetAbort(this);
-    vtkLacunaExecution execution(this);
+    lacuna::ForgetAbort(this);
+    lacuna::AlgorithmExecution execution(this);
     lacuna::SampleGrid(execution, this->GetScene(), dimensions,
       toPhysical * lacuna::Matrix4::Translation(first), truth->GetPointer(0));
     grid->GetPointData()->AddArray(truth);

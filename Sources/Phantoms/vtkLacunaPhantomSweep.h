@@ -3,7 +3,7 @@
 /// @brief a freehand ultrasound sweep over an analytic scene whose truth is known
 ///
 /// Moves a simulated probe over a scene and images it. Output: tracked slices as in
-/// vtkLacunaTrackedSlices.h, ImageSize[0] x ImageSize[1] x NumberOfSlices, unsigned char or float,
+/// lacunaTrackedSlices.h, ImageSize[0] x ImageSize[1] x NumberOfSlices, unsigned char or float,
 /// with the field data ImageToReference, Timestamp (25 slices per second), SliceStatus (all valid),
 /// FrameNumber, ProbeToReference (double, 16 components, one tuple per slice) and ImageToProbe (one
 /// tuple); ImageToReference = ProbeToReference * ImageToProbe.
@@ -188,7 +188,7 @@ protected:
   ~vtkLacunaPhantomSweep() override;
   int FillInputPortInformation(int port, vtkInformation* info) override;
   void Announce(const lacuna::Ports& ports) override;
-  void Make(const lacuna::Ports& ports, vtkLacunaExecution& execution) override;
+  void Make(const lacuna::Ports& ports, lacuna::AlgorithmExecution& execution) override;
   std::string Parameters(int port) const override;
 
   int NumberOfSlices = 60;

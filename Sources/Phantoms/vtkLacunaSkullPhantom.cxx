@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkLacunaSkullPhantom.h"
 
+#include "lacunaArrays.h"
+#include "lacunaCoordinates.h"
 #include "lacunaMemory.h"
 #include "lacunaParameterText.h"
 #include "lacunaSkull.h"
+#include "lacunaVolumeDirection.h"
 #include "vtkDataArray.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
-#include "vtkLacunaArrays.h"
-#include "vtkLacunaCoordinates.h"
-#include "vtkLacunaVolumeDirection.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
@@ -63,7 +63,7 @@ void vtkLacunaSkullPhantom::Announce(const lacuna::Ports& ports)
 }
 
 //------------------------------------------------------------------------------
-void vtkLacunaSkullPhantom::Make(const lacuna::Ports& ports, vtkLacunaExecution& execution)
+void vtkLacunaSkullPhantom::Make(const lacuna::Ports& ports, lacuna::AlgorithmExecution& execution)
 {
   const lacuna::Skull skull = this->MakeSkull();
   lacuna::Extent extent = ports.GetExtent();
@@ -77,10 +77,10 @@ void vtkLacunaSkullPhantom::Make(const lacuna::Ports& ports, vtkLacunaExecution&
   output->SetOrigin(skull.GetOrigin().data());
   output->SetSpacing(this->Spacing);
   output->SetExtent(extent.data());
-  vtkDataArray* scalars = vtkLacunaArrays::AddScalars(output, VTK_SHORT, "HounsfieldUnits");
+  vtkDataArray* scalars = lacuna::Arrays::AddScalars(output, VTK_SHORT, "HounsfieldUnits");
   skull.Sample(execution, extent, static_cast<short*>(scalars->GetVoidPointer(0)));
-  vtkLacunaCoordinates::Mark(output, vtkLacunaCoordinates::Patient);
-  vtkLacunaVolumeDirection::Record(output);
+  lacuna::Coordinates::Mark(output, lacuna::Coordinates::Patient);
+  lacuna::VolumeDirection::Record(output);
 }
 
 //------------------------------------------------------------------------------

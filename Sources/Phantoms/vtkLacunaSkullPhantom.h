@@ -100,7 +100,7 @@ protected:
   vtkLacunaSkullPhantom();
   ~vtkLacunaSkullPhantom() override;
   void Announce(const lacuna::Ports& ports) override;
-  void Make(const lacuna::Ports& ports, vtkLacunaExecution& execution) override;
+  void Make(const lacuna::Ports& ports, lacuna::AlgorithmExecution& execution) override;
   std::string Parameters(int port) const override;
 
   double Spacing[3] = { 1, 1, 2.3 };

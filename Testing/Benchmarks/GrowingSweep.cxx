@@ -12,10 +12,10 @@
 /// last update worked on.
 #include "lacunaBenchmark.h"
 #include "lacunaSweptScene.h"
+#include "lacunaTrackedSlices.h"
 #include "vtkImageData.h"
 #include "vtkLacunaSliceRayCaster.h"
 #include "vtkLacunaSweptVolume.h"
-#include "vtkLacunaTrackedSlices.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
 #include "vtkSmartPointer.h"
@@ -57,7 +57,7 @@ vtkSmartPointer<vtkImageData> MakeStack(int count)
     times.push_back(0.04 * n);
     frames.push_back(n);
   }
-  vtkLacunaTrackedSlices::Write(
+  lacuna::TrackedSlices::Write(
     stack, poses, times, std::vector<unsigned char>(poses.size(), 0), frames);
   return stack;
 }

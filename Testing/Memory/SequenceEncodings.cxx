@@ -4,12 +4,12 @@
 //
 //   TestSequenceEncodings <folder>
 #include "lacunaCheck.h"
+#include "lacunaTrackedSlices.h"
 #include "vtkDataArray.h"
 #include "vtkImageData.h"
 #include "vtkLacunaSweptVolume.h"
 #include "vtkLacunaTrackedSliceReader.h"
 #include "vtkLacunaTrackedSliceWriter.h"
-#include "vtkLacunaTrackedSlices.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
 
@@ -57,7 +57,7 @@ vtkSmartPointer<vtkImageData> MakeStack()
     times.push_back(0.04 * k);
     frames.push_back(k);
   }
-  vtkLacunaTrackedSlices::Write(stack, poses, times, std::vector<unsigned char>(Slices, 0), frames);
+  lacuna::TrackedSlices::Write(stack, poses, times, std::vector<unsigned char>(Slices, 0), frames);
   return stack;
 }
 

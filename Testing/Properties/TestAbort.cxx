@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lacunaTests.h"
 #include "lacunaTrial.h"
+#include "lacunaVersionCompat.h"
 #include "vtkCommand.h"
 #include "vtkInformation.h"
-#include "vtkLacunaVersionCompat.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkPassInputTypeAlgorithm.h"
@@ -49,7 +49,7 @@ protected:
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override
   {
     this->AbortExecuteOn();
-    vtkLacunaCheckAbort(this);
+    lacuna::CheckAbort(this);
     return 1;
   }
 };
@@ -67,7 +67,7 @@ std::string TestStoppedInput(const Trial& trial, Dice& dice)
       ports.push_back(port);
     }
   }
-  if (ports.empty() || !vtkLacunaTellsOfAbort)
+  if (ports.empty() || !lacuna::TellsOfAbort)
   {
     return {};
   }

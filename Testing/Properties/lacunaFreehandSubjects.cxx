@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Filters that take tracked slices, pictures and tables of poses.
+#include "lacunaFieldData.h"
 #include "lacunaRandomData.h"
 #include "lacunaSubject.h"
+#include "lacunaTrackedSlices.h"
 #include "lacunaTrial.h"
 #include "vtkDataArray.h"
 #include "vtkFieldData.h"
 #include "vtkImageData.h"
 #include "vtkLacunaAssembleTrackedSlices.h"
-#include "vtkLacunaFieldData.h"
 #include "vtkLacunaGateSlices.h"
 #include "vtkLacunaProbeCalibration.h"
 #include "vtkLacunaScanRegion.h"
@@ -17,7 +18,6 @@
 #include "vtkLacunaSweptVolume.h"
 #include "vtkLacunaTemporalCalibration.h"
 #include "vtkLacunaTrackedSliceWriter.h"
-#include "vtkLacunaTrackedSlices.h"
 #include "vtkLacunaTrackerSelfTest.h"
 #include "vtkStringArray.h"
 #include "vtkTable.h"
@@ -39,7 +39,7 @@ Inputs MakeSlices(Dice& dice)
 int CountSlices(vtkImageData* stack)
 {
   return static_cast<int>(
-    stack->GetFieldData()->GetArray(vtkLacunaTrackedSlices::SliceStatusName)->GetNumberOfTuples());
+    stack->GetFieldData()->GetArray(lacuna::TrackedSlices::SliceStatusName)->GetNumberOfTuples());
 }
 
 template <class T>
@@ -207,9 +207,9 @@ Inputs MakeWireScan(Dice& dice)
     columns[2].push_back(seen[1] + dice.Real(-0.3, 0.3));
     wires->InsertNextValue(std::string(1, "XYZ"[i % 3]));
   }
-  vtkLacunaTrackedSlices::Write(stack, {}, times,
-    std::vector<unsigned char>(slices, vtkLacunaTrackedSlices::Valid), std::vector<int>(slices, 1));
-  vtkLacunaFieldData::SetMatrices(stack, "ProbeToTracker", probe);
+  lacuna::TrackedSlices::Write(stack, {}, times,
+    std::vector<unsigned char>(slices, lacuna::TrackedSlices::Valid), std::vector<int>(slices, 1));
+  lacuna::FieldData::SetMatrices(stack, "ProbeToTracker", probe);
   auto picks = vtkSmartPointer<vtkTable>::New();
   AddColumn(picks, "Slice", columns[0]);
   AddColumn(picks, "Column", columns[1]);
@@ -275,9 +275,9 @@ Inputs MakeFloor(Dice& dice)
     times.push_back(0.04 * i);
     probe.push_back(lacuna::Matrix4::Translation({ 3, 4, height(0.04 * i) }));
   }
-  vtkLacunaTrackedSlices::Write(
+  lacuna::TrackedSlices::Write(
     stack, {}, times, std::vector<unsigned char>(slices, 0), std::vector<int>(slices, 1));
-  vtkLacunaFieldData::SetMatrices(stack, "ProbeToTracker", probe);
+  lacuna::FieldData::SetMatrices(stack, "ProbeToTracker", probe);
   return { stack };
 }
 
@@ -321,10 +321,10 @@ Inputs MakeReceivers(Dice& dice)
       lacuna::Matrix4::Translation({ metal, dice.Real(-0.5, 0.5), 0 }) * first.back() * bar);
     times.push_back(0.2 * i);
   }
-  vtkLacunaTrackedSlices::Write(stack, {}, times,
-    std::vector<unsigned char>(slices, vtkLacunaTrackedSlices::Valid), std::vector<int>(slices, 1));
-  vtkLacunaFieldData::SetMatrices(stack, "ProbeToTracker", first);
-  vtkLacunaFieldData::SetMatrices(stack, "PointerToTracker", second);
+  lacuna::TrackedSlices::Write(stack, {}, times,
+    std::vector<unsigned char>(slices, lacuna::TrackedSlices::Valid), std::vector<int>(slices, 1));
+  lacuna::FieldData::SetMatrices(stack, "ProbeToTracker", first);
+  lacuna::FieldData::SetMatrices(stack, "PointerToTracker", second);
   return { stack };
 }
 }

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lacunaRandomData.h"
 
+#include "lacunaDepthMap.h"
+#include "lacunaFieldData.h"
+#include "lacunaTrackedSlices.h"
 #include "vtkCellArray.h"
 #include "vtkCharArray.h"
 #include "vtkDataArray.h"
 #include "vtkDoubleArray.h"
 #include "vtkFloatArray.h"
 #include "vtkImageData.h"
-#include "vtkLacunaDepthMap.h"
-#include "vtkLacunaFieldData.h"
-#include "vtkLacunaTrackedSlices.h"
 #include "vtkMatrix3x3.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
@@ -239,19 +239,19 @@ vtkSmartPointer<vtkImageData> RandomSlices(Dice& dice, bool isCalibrated)
     poses.push_back(probe.back() * imageToProbe);
     times.push_back(10 + 0.04 * i);
     status.push_back(static_cast<unsigned char>(
-      dice.Chance(0.05) ? dice.Whole(1, 15) : vtkLacunaTrackedSlices::Valid));
+      dice.Chance(0.05) ? dice.Whole(1, 15) : lacuna::TrackedSlices::Valid));
     frames.push_back(100 + i);
   }
   if (!isCalibrated)
   {
     poses.clear();
   }
-  vtkLacunaTrackedSlices::Write(stack, poses, times, status, frames);
-  vtkLacunaFieldData::SetMatrices(stack, "ProbeToTracker", probe);
+  lacuna::TrackedSlices::Write(stack, poses, times, status, frames);
+  lacuna::FieldData::SetMatrices(stack, "ProbeToTracker", probe);
   if (isCalibrated)
   {
-    vtkLacunaFieldData::SetMatrices(
-      stack, vtkLacunaTrackedSlices::ImageToProbeName, { imageToProbe });
+    lacuna::FieldData::SetMatrices(
+      stack, lacuna::TrackedSlices::ImageToProbeName, { imageToProbe });
   }
   return stack;
 }
@@ -363,18 +363,18 @@ vtkSmartPointer<vtkImageData> RandomDepthMap(Dice& dice, bool isFilled, int leas
   map->SetExtent(first[0], first[0] + columns - 1, first[1], first[1] + rows - 1, 0, 0);
   const lacuna::Matrix4 pose = RandomPose(dice, 100);
   const lacuna::Vec2 pixel{ dice.Real(0.7, 1.3), dice.Real(0.7, 1.3) };
-  vtkLacunaDepthMap::SetGeometry(
+  lacuna::DepthMap::SetGeometry(
     map, { pose.Column(3), pose.Column(0), pose.Column(1), pose.Column(2), pixel });
   const Relief relief(dice);
   const bool hasHoles = !isFilled && dice.Chance(0.6);
   const lacuna::Vec2 middle{ first[0] + 0.5 * columns, first[1] + 0.5 * rows };
   const double radius = std::min(columns, rows) * (isFilled ? 0.25 : dice.Real(0.1, 0.4));
-  const auto depths = AddArray(map, VTK_DOUBLE, vtkLacunaDepthMap::DepthName);
-  const auto valid = AddArray(map, VTK_CHAR, vtkLacunaDepthMap::MaskName);
-  const auto normals = AddArray(map, VTK_FLOAT, vtkLacunaDepthMap::NormalsName, 3);
+  const auto depths = AddArray(map, VTK_DOUBLE, lacuna::DepthMap::DepthName);
+  const auto valid = AddArray(map, VTK_CHAR, lacuna::DepthMap::MaskName);
+  const auto normals = AddArray(map, VTK_FLOAT, lacuna::DepthMap::NormalsName, 3);
   const auto mark = AddArray(map, VTK_UNSIGNED_CHAR, isFilled ? "Marked" : "Defect");
-  const auto filled = AddArray(map, VTK_CHAR, vtkLacunaDepthMap::FilledMaskName);
-  const auto fitted = AddArray(map, VTK_DOUBLE, vtkLacunaDepthMap::FittedName);
+  const auto filled = AddArray(map, VTK_CHAR, lacuna::DepthMap::FilledMaskName);
+  const auto fitted = AddArray(map, VTK_DOUBLE, lacuna::DepthMap::FittedName);
   for (vtkIdType i = 0; i < map->GetNumberOfPoints(); ++i)
   {
     const lacuna::Vec2 p{ first[0] + static_cast<double>(i % columns),
@@ -392,11 +392,11 @@ vtkSmartPointer<vtkImageData> RandomDepthMap(Dice& dice, bool isFilled, int leas
   }
   if (!isFilled)
   {
-    map->GetPointData()->RemoveArray(vtkLacunaDepthMap::FilledMaskName);
-    map->GetPointData()->RemoveArray(vtkLacunaDepthMap::FittedName);
+    map->GetPointData()->RemoveArray(lacuna::DepthMap::FilledMaskName);
+    map->GetPointData()->RemoveArray(lacuna::DepthMap::FittedName);
   }
-  map->GetPointData()->SetActiveScalars(vtkLacunaDepthMap::DepthName);
-  vtkLacunaFieldData::Set(map, vtkLacunaDepthMap::IsoValuesName, { 50 }, 1);
+  map->GetPointData()->SetActiveScalars(lacuna::DepthMap::DepthName);
+  lacuna::FieldData::Set(map, lacuna::DepthMap::IsoValuesName, { 50 }, 1);
   return map;
 }
 
@@ -453,7 +453,7 @@ vtkSmartPointer<vtkStructuredGrid> RandomMould(Dice& dice)
   }
   grid->SetDimensions(sizes[dice.Whole(0, 2)]);
   grid->SetPoints(points);
-  vtkLacunaFieldData::SetMatrices(grid, "PressToPatient", { RandomPose(dice, 100) });
+  lacuna::FieldData::SetMatrices(grid, "PressToPatient", { RandomPose(dice, 100) });
   return grid;
 }
 }

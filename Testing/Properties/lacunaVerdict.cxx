@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lacunaVerdict.h"
 
+#include "lacunaProvenance.h"
 #include "vtkAbstractArray.h"
 #include "vtkAlgorithm.h"
 #include "vtkCellArray.h"
@@ -10,7 +11,6 @@
 #include "vtkFieldData.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
-#include "vtkLacunaProvenance.h"
 #include "vtkMatrix3x3.h"
 #include "vtkPointData.h"
 #include "vtkPointSet.h"
@@ -323,7 +323,7 @@ std::string FindFault(
   {
     fault = FindFaultInImage(image, algorithm->GetOutputInformation(port));
   }
-  if (fault.empty() && vtkLacunaProvenance::Get(data).empty())
+  if (fault.empty() && lacuna::Provenance::Get(data).empty())
   {
     fault = "no provenance";
   }

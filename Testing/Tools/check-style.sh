@@ -21,9 +21,9 @@ for file in $sources $(git ls-files '*.py' '*.sh' '*.cmake' '*CMakeLists.txt'); 
 done
 bad=$(git ls-files '*/Kernel/*' | xargs grep -lE '#include *[<"]vtk' || true)
 [ -z "$bad" ] || complain "kernels must not include VTK: $bad"
-bad=$(git ls-files 'Filters/*.cxx' 'Readers/*.cxx' 'Sources/*.cxx' 'Filters/*.h' 'Readers/*.h' 'Sources/*.h' | grep -vE '/(Kernel|Testing)/|vtkLacuna(Arrays|SplineLoop)' |
+bad=$(git ls-files 'Filters/*.cxx' 'Readers/*.cxx' 'Sources/*.cxx' 'Filters/*.h' 'Readers/*.h' 'Sources/*.h' | grep -vE '/(Kernel|Testing)/|(lacunaArrays|vtkLacunaSplineLoop)' |
   xargs grep -nE -- '->(SetNumberOf(Tuples|Points)|AllocateScalars|AllocateExact|CopyAllocate|DeepCopy)\(' || true)
-[ -z "$bad" ] || complain "VTK ends the program where there is no memory; use vtkLacunaArrays: $bad"
+[ -z "$bad" ] || complain "VTK ends the program where there is no memory; use lacuna::Arrays: $bad"
 for file in Plugins/Lacuna/{Sources,Readers,Filters}/*.xml; do
   name=$(basename "$file" .xml)
   case $name in PolhemusVideoSource | SplineLoop) continue ;; esac # of devices; a part of RBF Hole Filler's

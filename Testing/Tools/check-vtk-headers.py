@@ -7,7 +7,7 @@ check-vtk-headers.py --paraview --suite SUITE BUILD        a build of the preset
                                                            that Debian's ParaView and Qt 6
 
 Takes the package's headers from apt and nothing else of it, and has the compiler read each source of the modules with them in the place of
-ParaView's, without making anything of it. --guarded: only those that know how versions differ (vtkLacunaVersionCompat.h). --suite: those
+ParaView's, without making anything of it. --guarded: only those that know how versions differ (lacunaVersionCompat.h). --suite: those
 of another Debian, bookworm (9.1), trixie (9.3) or sid, instead of this one's (DEBIAN_MIRROR). They stay in BUILD: delete headers-sid for newer ones.
 (Testing/Tools/chroot.sh builds and tests with that VTK.)
 """
@@ -24,7 +24,7 @@ import tempfile
 
 VTK = "libvtk9-dev", "libtbb-dev", "libjsoncpp-dev"  # whose headers VTK's include
 PARAVIEW = *VTK, "paraview-dev", "qt6-base-dev", "libvtk9-qt-dev"  # from 6.1 on it has no VTK of its own
-GUARDS = "vtkLacunaVersionCompat.h"
+GUARDS = "lacunaVersionCompat.h"
 
 
 def apt(folder, suite):

@@ -20,7 +20,8 @@ declaration (not its comment) to its closing brace. Lambdas and local classes ar
 around them.
 
 Glue is the lines of the files GLUE in Filters/Common. Boilerplate is, in all other files, the lines of the
-functions REQUESTS, and those lines of RequestData that name an information object or a class of the glue.
+functions REQUESTS, which answer VTK's requests, and those lines of RequestData that name an information object or a
+class of the glue. The lists also have the names of earlier versions, so that these can be measured, too.
 """
 import argparse
 import collections
@@ -28,8 +29,8 @@ import os
 import re
 import subprocess
 
-GLUE = re.compile(r"Filters/Common/vtkLacuna(Algorithm|Execution|Failure|Inputs|Meeting|Reading|Request|Writing)\w*\.(h|cxx)$")
-REQUESTS = re.compile(r"::(RequestDataObject|RequestInformation|RequestUpdateExtent|RequestUpdateTime|ProcessRequest)$")
+GLUE = re.compile(r"Filters/Common/(?:vtkL|l)acuna(Algorithm|Errors|Execution|Failure|Input|Meeting|Reading|Request|Writer|Writing)\w*\.(h|cxx)$")
+REQUESTS = re.compile(r"::(RequestDataObject|RequestInformation|RequestUpdateExtent|RequestUpdateTime|ProcessRequest|Announce|Ask|GetOrigins|MakeNothing)$")
 NAMED = re.compile(r"\b(vtkInformation\w*|inputVector|outputVector|inputs|outputs|vtkLacuna(Execution|Failure|Inputs|Meeting|Reading|Request|Writing))\b")
 LONGEST = 80
 NOT_CODE = re.compile(r'//[^\n]*|/\*.*?\*/|R"(\w*)\(.*?\)\1"|"(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\\n])+\'|^[ \t]*#(?:[^\n]*\\\n)*[^\n]*', re.DOTALL | re.MULTILINE)
@@ -44,7 +45,7 @@ def blank(match):
 
 def functions(text):
     """Name, first line and lines of each function."""
-    code = NOT_CODE.sub(blank, text)
+    code = re.sub(r"vtkLacunaAlgorithmOf\((\w+)\)", r" \1", NOT_CODE.sub(blank, text))
     scopes = []  # the functions and initializers (True), namespaces and classes (False) around; name, first line
     start = 0  # of the declaration
     for mark in re.finditer(r"[{};]|(?<!:)\b(?:public|private|protected):(?!:)", code):
@@ -87,7 +88,7 @@ found = [(lines, path, first, name) for path, text in sources.items() for name, 
 found.sort(key=lambda row: (-row[0], row[1:]))
 long = [row for row in found if row[0] > LONGEST]
 named = [path for path in headers if os.path.basename(path).startswith("vtkLacuna")]
-plain = [path for path in named if not re.search(r"\bvtk\w*TypeMacro\(", sources[path])]
+plain = [path for path in named if not re.search(r"\bvtk\w*TypeMacro\(|: public Super$", sources[path], re.MULTILINE)]
 glue = {path: sources[path].count("\n") for path in sources if GLUE.match(path)}
 requests = [row for row in found if row[1] not in glue and REQUESTS.search(row[3])]
 for lines, path, first, name in found:

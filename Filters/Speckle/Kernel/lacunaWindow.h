@@ -55,7 +55,7 @@ public:
   Window Reflect() const;
 
   /// The box of all samples that results in box depend on; it ends where the integers do, so that a
-  /// request of any extent can be made. What is filtered lies within 2^30 of 0 (vtkLacunaInputs).
+  /// request of any extent can be made. What is filtered lies within 2^30 of 0 (lacuna::InputCheck).
   Extent Grow(const Extent& box) const;
 
 private:

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What the base does for every algorithm. What it does for several ranks: Testing/ParaView/RanksErrors.py.
 #include "lacunaCheck.h"
+#include "lacunaCoordinates.h"
+#include "lacunaProvenance.h"
 #include "vtkExecutive.h"
 #include "vtkFieldData.h"
 #include "vtkImageAlgorithm.h"
@@ -8,8 +10,6 @@
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
 #include "vtkLacunaAlgorithm.h"
-#include "vtkLacunaCoordinates.h"
-#include "vtkLacunaProvenance.h"
 #include "vtkMultiBlockDataSet.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
@@ -36,7 +36,7 @@ class TestFilter : public vtkLacunaAlgorithmOf(vtkImageAlgorithm)
 public:
   static TestFilter* New();
   vtkTypeMacro(TestFilter, vtkImageAlgorithm);
-  std::function<void(vtkLacunaExecution&)> Body = [](vtkLacunaExecution&) {};
+  std::function<void(lacuna::AlgorithmExecution&)> Body = [](lacuna::AlgorithmExecution&) {};
   std::string AnnouncedError;
   int Made = 0;
 
@@ -55,7 +55,7 @@ protected:
       throw std::runtime_error(this->AnnouncedError);
     }
   }
-  void Make(const lacuna::Ports& ports, vtkLacunaExecution& execution) override
+  void Make(const lacuna::Ports& ports, lacuna::AlgorithmExecution& execution) override
   {
     ++this->Made;
     ports.GetOutput<vtkImageData>()->ShallowCopy(ports.GetInput<vtkImageData>());
@@ -92,7 +92,8 @@ struct Chain
   }
 };
 
-const auto Throw = [](vtkLacunaExecution&) { throw std::runtime_error("slice 7 has no pose"); };
+const auto Throw = [](lacuna::AlgorithmExecution&)
+{ throw std::runtime_error("slice 7 has no pose"); };
 
 // Reported by the filter that has it and by those behind it; and gone when it is mended.
 void TestErrors()
@@ -112,7 +113,7 @@ void TestErrors()
     LACUNA_CHECK(chain.Update() == 0); // nothing changed: it is tried again, and reported again
     LACUNA_CHECK(chain.First->Made == before + 1);
     LACUNA_CHECK(chain.OfSecond->HasError("slice 7 has no pose"));
-    chain.First->Body = [](vtkLacunaExecution&) {};
+    chain.First->Body = [](lacuna::AlgorithmExecution&) {};
     chain.First->Modified();
     LACUNA_CHECK(chain.Update() == 720);
     LACUNA_CHECK(chain.OfFirst->Errors.empty() && chain.OfSecond->Errors.empty());
@@ -142,7 +143,7 @@ void TestThreads()
   std::atomic<int> covered(0);
   std::set<std::thread::id> workers;
   std::mutex mutex;
-  chain.First->Body = [&](vtkLacunaExecution& execution)
+  chain.First->Body = [&](lacuna::AlgorithmExecution& execution)
   {
     execution.For(1000, 7,
       [&](std::int64_t begin, std::int64_t end)
@@ -161,7 +162,7 @@ void TestThreads()
 void TestStop()
 {
   Chain chain;
-  chain.First->Body = [&](vtkLacunaExecution& execution)
+  chain.First->Body = [&](lacuna::AlgorithmExecution& execution)
   {
     chain.First->SetAbortExecute(1);
     execution.Report(0.5);
@@ -169,7 +170,7 @@ void TestStop()
   LACUNA_CHECK(chain.Update() == 0 || chain.OfSecond->Errors.empty());
   LACUNA_CHECK(chain.OfFirst->Errors.empty());
   LACUNA_CHECK(chain.First->GetOutput()->GetNumberOfPoints() == 0);
-  chain.First->Body = [](vtkLacunaExecution&) {};
+  chain.First->Body = [](lacuna::AlgorithmExecution&) {};
   chain.First->SetAbortExecute(0);
   chain.First->Modified();
   LACUNA_CHECK(chain.Update() == 720);
@@ -249,15 +250,15 @@ void TestProvenance()
   vtkNew<vtkImageData> image;
   image->SetDimensions(2, 2, 2);
   image->AllocateScalars(VTK_FLOAT, 1);
-  vtkLacunaCoordinates::Mark(image, vtkLacunaCoordinates::Patient);
+  lacuna::Coordinates::Mark(image, lacuna::Coordinates::Patient);
   vtkNew<TestFilter> filter;
   filter->SetInputData(image);
   filter->Update();
-  const auto steps = vtkLacunaProvenance::Get(filter->GetOutput());
+  const auto steps = lacuna::Provenance::Get(filter->GetOutput());
   LACUNA_CHECK(steps.size() == 1);
   LACUNA_CHECK_CONTAINS(steps.front(), "TestFilter input:");
   LACUNA_CHECK_CONTAINS(steps.front(), "Port=0");
-  LACUNA_CHECK(vtkLacunaCoordinates::Get(filter->GetOutput()) == vtkLacunaCoordinates::Patient);
+  LACUNA_CHECK(lacuna::Coordinates::Get(filter->GetOutput()) == lacuna::Coordinates::Patient);
 }
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Arrays get their size, or an error that names the bytes; VTK's own functions end the program.
+#include "lacunaArrays.h"
 #include "lacunaCheck.h"
 #include "lacunaSanitized.h"
 #include "vtkCellArray.h"
@@ -7,7 +8,6 @@
 #include "vtkFloatArray.h"
 #include "vtkIdTypeArray.h"
 #include "vtkImageData.h"
-#include "vtkLacunaArrays.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
 #include "vtkPoints.h"
@@ -24,7 +24,7 @@ std::string ErrorOfSize(vtkAbstractArray* array, vtkIdType tuples)
 {
   try
   {
-    vtkLacunaArrays::SetNumberOfTuples(array, tuples);
+    lacuna::Arrays::SetNumberOfTuples(array, tuples);
   }
   catch (const std::runtime_error& e)
   {
@@ -39,7 +39,7 @@ int TestArrays(int, char*[])
   vtkNew<vtkDoubleArray> normals;
   normals->SetName("Normals");
   normals->SetNumberOfComponents(3);
-  vtkLacunaArrays::SetNumberOfTuples(normals, 1000);
+  lacuna::Arrays::SetNumberOfTuples(normals, 1000);
   LACUNA_CHECK(normals->GetNumberOfTuples() == 1000 && normals->GetNumberOfValues() == 3000);
   for (vtkIdType i = 0; i < 3000; ++i)
   {
@@ -51,7 +51,7 @@ int TestArrays(int, char*[])
   LACUNA_CHECK(normals->GetValue(2999) == 2999 && normals->GetValue(3002) == 9);
   normals->Resize(10);
   LACUNA_CHECK(normals->GetNumberOfTuples() == 10 && normals->GetValue(29) == 29);
-  vtkLacunaArrays::SetNumberOfTuples(normals, 0);
+  lacuna::Arrays::SetNumberOfTuples(normals, 0);
   LACUNA_CHECK(normals->GetNumberOfTuples() == 0);
 
   if (!lacuna::Sanitized) // whose malloc ends the program
@@ -71,35 +71,35 @@ int TestArrays(int, char*[])
   vtkNew<vtkDoubleArray> values;
   values->InsertNextValue(1);
   LACUNA_CHECK(values->GetRange()[1] == 1);
-  vtkLacunaArrays::SetNumberOfTuples(values, 2);
+  lacuna::Arrays::SetNumberOfTuples(values, 2);
   values->SetValue(0, 5);
   values->SetValue(1, 7);
   LACUNA_CHECK(values->GetRange()[0] == 5 && values->GetRange()[1] == 7);
 
   vtkNew<vtkSOADataArrayTemplate<float>> blocks;
   blocks->SetNumberOfComponents(2);
-  vtkLacunaArrays::SetNumberOfTuples(blocks, 5);
+  lacuna::Arrays::SetNumberOfTuples(blocks, 5);
   blocks->SetTypedComponent(4, 1, 3);
   LACUNA_CHECK(blocks->GetNumberOfTuples() == 5 && blocks->GetTypedComponent(4, 1) == 3);
   vtkNew<vtkStringArray> texts;
-  vtkLacunaArrays::SetNumberOfTuples(texts, 4);
+  lacuna::Arrays::SetNumberOfTuples(texts, 4);
   LACUNA_CHECK(texts->GetNumberOfTuples() == 4);
 
   vtkNew<vtkPoints> points;
   points->SetDataTypeToDouble();
-  vtkLacunaArrays::SetNumberOfPoints(points, 2);
+  lacuna::Arrays::SetNumberOfPoints(points, 2);
   points->SetPoint(1, 1, 2, 3);
   LACUNA_CHECK(points->GetNumberOfPoints() == 2 && points->GetPoint(1)[2] == 3);
 
   vtkNew<vtkFloatArray> copy;
   blocks->SetName("Blocks");
   blocks->SetComponentName(1, "second");
-  vtkLacunaArrays::Copy(blocks, copy);
+  lacuna::Arrays::Copy(blocks, copy);
   LACUNA_CHECK(copy->GetNumberOfTuples() == 5 && copy->GetTypedComponent(4, 1) == 3);
   LACUNA_CHECK(std::string(copy->GetName()) == "Blocks" && copy->HasAComponentName());
 
   vtkNew<vtkCellArray> cells;
-  vtkLacunaArrays::Reserve(cells, 2, 5);
+  lacuna::Arrays::Reserve(cells, 2, 5);
   LACUNA_CHECK(cells->GetNumberOfCells() == 0);
   cells->InsertNextCell({ 4, 5, 6 });
   cells->InsertNextCell({ 7, 8 });
@@ -108,13 +108,13 @@ int TestArrays(int, char*[])
   const vtkIdType* ids = nullptr;
   cells->GetCellAtId(1, count, ids);
   LACUNA_CHECK(cells->GetNumberOfCells() == 3 && count == 2 && ids[0] == 7 && ids[1] == 8);
-  vtkLacunaArrays::Reserve(points, 3);
+  lacuna::Arrays::Reserve(points, 3);
   LACUNA_CHECK(points->GetNumberOfPoints() == 0 && points->InsertNextPoint(1, 2, 3) == 0);
   LACUNA_CHECK(points->GetNumberOfPoints() == 1);
 
   vtkNew<vtkImageData> image;
   image->SetExtent(-1, 2, 3, 5, 7, 7);
-  vtkDataArray* scalars = vtkLacunaArrays::AddScalars(image, VTK_SHORT, "Grey");
+  vtkDataArray* scalars = lacuna::Arrays::AddScalars(image, VTK_SHORT, "Grey");
   LACUNA_CHECK(
     image->GetPointData()->GetScalars() == scalars && scalars->GetDataType() == VTK_SHORT);
   LACUNA_CHECK(scalars->GetNumberOfTuples() == 12 && std::string(scalars->GetName()) == "Grey");

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lacunaCheck.h"
+#include "lacunaDepthMap.h"
+#include "lacunaFieldData.h"
 #include "vtkDoubleArray.h"
 #include "vtkImageData.h"
-#include "vtkLacunaDepthMap.h"
-#include "vtkLacunaFieldData.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
 
@@ -14,17 +14,17 @@ void Make(vtkImageData* map)
 {
   map->SetExtent(2, 5, 3, 7, 0, 0); // a cropped map keeps its geometry
   vtkNew<vtkDoubleArray> depth;
-  depth->SetName(vtkLacunaDepthMap::DepthName);
+  depth->SetName(lacuna::DepthMap::DepthName);
   depth->SetNumberOfTuples(map->GetNumberOfPoints());
   depth->Fill(10);
   map->GetPointData()->SetScalars(depth);
-  vtkLacunaDepthMap::Geometry g;
+  lacuna::DepthMap::Geometry g;
   g.Origin = { 100, -20, 3 };
   g.Right = { 0.6, 0.8, 0 };
   g.Down = { 0, 0, -1 };
   g.View = { -0.8, 0.6, 0 };
   g.PixelSpacing = { 0.5, 0.25 };
-  vtkLacunaDepthMap::SetGeometry(map, g);
+  lacuna::DepthMap::SetGeometry(map, g);
 }
 }
 
@@ -33,7 +33,7 @@ int TestDepthMapContract(int, char*[])
   {
     vtkNew<vtkImageData> map;
     Make(map);
-    const vtkLacunaDepthMap contract(map);
+    const lacuna::DepthMap contract(map);
     LACUNA_CHECK(!contract.IsPerspective());
     // by hand: origin + 2 columns of 0.5 mm right + 4 rows of 0.25 mm down + 10 mm along the view
     const lacuna::Vec3 p = contract.GetPoint(2, 4, 10);
@@ -55,8 +55,8 @@ int TestDepthMapContract(int, char*[])
     // perspective: rays run from the eye through the pixels
     vtkNew<vtkImageData> map;
     Make(map);
-    vtkLacunaFieldData::Set(map, vtkLacunaDepthMap::EyePositionName, { 100, -20, 103 }, 3);
-    const vtkLacunaDepthMap contract(map);
+    lacuna::FieldData::Set(map, lacuna::DepthMap::EyePositionName, { 100, -20, 103 }, 3);
+    const lacuna::DepthMap contract(map);
     LACUNA_CHECK(contract.IsPerspective());
     LACUNA_CHECK_NEAR(contract.GetEye()[2], 103, 0);
     const lacuna::Vec3 ray = contract.GetRay(0, 0);
@@ -67,27 +67,27 @@ int TestDepthMapContract(int, char*[])
     vtkNew<vtkImageData> map;
     Make(map);
     map->SetDirectionMatrix(1, 0, 0, 0, 1, 0, 0, 0, 1); // what vtkImageMedian3D does
-    LACUNA_CHECK_THROWS(vtkLacunaDepthMap contract(map), "disagrees");
+    LACUNA_CHECK_THROWS(lacuna::DepthMap contract(map), "disagrees");
   }
   {
     vtkNew<vtkImageData> map;
     Make(map);
-    map->GetPointData()->RemoveArray(vtkLacunaDepthMap::DepthName);
-    LACUNA_CHECK_THROWS(vtkLacunaDepthMap contract(map), "'Depth'");
+    map->GetPointData()->RemoveArray(lacuna::DepthMap::DepthName);
+    LACUNA_CHECK_THROWS(lacuna::DepthMap contract(map), "'Depth'");
   }
   {
     vtkNew<vtkImageData> map;
     Make(map);
-    vtkLacunaFieldData::Set(map, vtkLacunaDepthMap::ImageToWorldName, { 1, 2, 3 }, 3);
-    LACUNA_CHECK_THROWS(vtkLacunaDepthMap contract(map), "expected 1 tuples of 16");
+    lacuna::FieldData::Set(map, lacuna::DepthMap::ImageToWorldName, { 1, 2, 3 }, 3);
+    LACUNA_CHECK_THROWS(lacuna::DepthMap contract(map), "expected 1 tuples of 16");
   }
   {
     vtkNew<vtkImageData> volume;
     volume->SetDimensions(3, 3, 2);
-    LACUNA_CHECK_THROWS(vtkLacunaDepthMap contract(volume), "2 layers");
+    LACUNA_CHECK_THROWS(lacuna::DepthMap contract(volume), "2 layers");
   }
-  LACUNA_CHECK(vtkLacunaDepthMap::GetNormalsName("Depth") == "Normals");
-  LACUNA_CHECK(vtkLacunaDepthMap::GetNormalsName("Depth_2") == "Normals_2");
-  LACUNA_CHECK(vtkLacunaDepthMap::GetNormalsName("Fitted") == "FittedNormals");
+  LACUNA_CHECK(lacuna::DepthMap::GetNormalsName("Depth") == "Normals");
+  LACUNA_CHECK(lacuna::DepthMap::GetNormalsName("Depth_2") == "Normals_2");
+  LACUNA_CHECK(lacuna::DepthMap::GetNormalsName("Fitted") == "FittedNormals");
   return lacunaCheck::Result();
 }

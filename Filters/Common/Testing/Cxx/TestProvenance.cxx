@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lacunaCheck.h"
+#include "lacunaCoordinates.h"
+#include "lacunaProvenance.h"
 #include "vtkDataArray.h"
 #include "vtkFieldData.h"
 #include "vtkImageData.h"
 #include "vtkImageShrink3D.h"
-#include "vtkLacunaCoordinates.h"
-#include "vtkLacunaProvenance.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
 #include "vtkPoints.h"
@@ -20,23 +20,23 @@ int TestProvenance(int, char*[])
   a->GetPointData()->GetScalars()->Fill(1);
   vtkNew<vtkImageData> b;
   vtkNew<vtkImageShrink3D> step;
-  vtkLacunaProvenance::Record(b, step, { a }, "Factor=2");
-  const std::vector<std::string> first = vtkLacunaProvenance::Get(b);
+  lacuna::Provenance::Record(b, step, { a }, "Factor=2");
+  const std::vector<std::string> first = lacuna::Provenance::Get(b);
   LACUNA_CHECK(first.size() == 1);
-  LACUNA_CHECK(first[0].find(vtkLacunaProvenance::GetVersion()) != std::string::npos);
+  LACUNA_CHECK(first[0].find(lacuna::Provenance::GetVersion()) != std::string::npos);
   LACUNA_CHECK(first[0].find("vtkImageShrink3D") != std::string::npos);
   LACUNA_CHECK(first[0].find("Factor=2") != std::string::npos);
 
   // the last byte counts
   a->GetPointData()->GetScalars()->SetComponent(26, 0, 2);
   vtkNew<vtkImageData> other;
-  vtkLacunaProvenance::Record(other, step, { a }, "Factor=2");
-  LACUNA_CHECK(vtkLacunaProvenance::Get(other) != first);
+  lacuna::Provenance::Record(other, step, { a }, "Factor=2");
+  LACUNA_CHECK(lacuna::Provenance::Get(other) != first);
 
   // the steps of all inputs, each once
   vtkNew<vtkImageData> c;
-  vtkLacunaProvenance::Record(c, step, { b, b, other }, "");
-  const std::vector<std::string> chain = vtkLacunaProvenance::Get(c);
+  lacuna::Provenance::Record(c, step, { b, b, other }, "");
+  const std::vector<std::string> chain = lacuna::Provenance::Get(c);
   LACUNA_CHECK(chain.size() == 3);
   LACUNA_CHECK(chain[0] == first[0]);
 
@@ -49,8 +49,8 @@ int TestProvenance(int, char*[])
   for (std::vector<std::string>& s : steps)
   {
     vtkNew<vtkPolyData> output;
-    vtkLacunaProvenance::Record(output, step, { mesh }, "");
-    s = vtkLacunaProvenance::Get(output);
+    lacuna::Provenance::Record(output, step, { mesh }, "");
+    s = lacuna::Provenance::Get(output);
     LACUNA_CHECK(s[0].find("input:-") == std::string::npos);
     points->SetPoint(0, 1, 2, 4);
   }
@@ -63,38 +63,38 @@ int TestProvenance(int, char*[])
       vtkStringArray::SafeDownCast(data->GetFieldData()->GetAbstractArray("Coordinates"));
     const std::string text =
       mark && mark->GetNumberOfValues() == 1 ? mark->GetValue(0) : std::string("-");
-    LACUNA_CHECK(vtkLacunaCoordinates::Get(data) == (text == "-" ? "" : text));
+    LACUNA_CHECK(lacuna::Coordinates::Get(data) == (text == "-" ? "" : text));
     return text;
   };
-  vtkLacunaCoordinates::Mark(a, vtkLacunaCoordinates::Patient);
-  vtkLacunaCoordinates::Mark(b, vtkLacunaCoordinates::Press);
+  lacuna::Coordinates::Mark(a, lacuna::Coordinates::Patient);
+  lacuna::Coordinates::Mark(b, lacuna::Coordinates::Press);
   vtkNew<vtkImageData> d;
-  vtkLacunaProvenance::Record(d, step, { mesh, a }, "");
+  lacuna::Provenance::Record(d, step, { mesh, a }, "");
   LACUNA_CHECK(coordinates(d) == "-");
-  vtkLacunaProvenance::Record(d, step, { a, b }, "");
+  lacuna::Provenance::Record(d, step, { a, b }, "");
   LACUNA_CHECK(coordinates(d) == "Patient");
-  vtkLacunaProvenance::Record(d, step, { b }, "");
+  lacuna::Provenance::Record(d, step, { b }, "");
   LACUNA_CHECK(coordinates(d) == "Patient");
-  vtkLacunaCoordinates::Mark(d, vtkLacunaCoordinates::Press);
+  lacuna::Coordinates::Mark(d, lacuna::Coordinates::Press);
   LACUNA_CHECK(coordinates(d) == "Press" && coordinates(a) == "Patient");
-  vtkLacunaCoordinates::Clear(d);
+  lacuna::Coordinates::Clear(d);
   LACUNA_CHECK(coordinates(d) == "-");
 
   // what lies in the press says where it comes from, when that is known
-  using namespace vtkLacunaCoordinates;
+  using namespace lacuna::Coordinates;
   MarkPress(a, d);
   LACUNA_CHECK(coordinates(d) == "Press" && GetBeforePress(d) == "Patient");
   vtkNew<vtkImageData> path;
-  vtkLacunaProvenance::Record(path, step, { d }, "");
+  lacuna::Provenance::Record(path, step, { d }, "");
   LACUNA_CHECK(coordinates(path) == "Press" && GetBeforePress(path) == "Patient");
   vtkNew<vtkImageData> unmarked;
   MarkPress(unmarked, d);
   LACUNA_CHECK(coordinates(d) == "Press" && GetBeforePress(d).empty());
-  vtkLacunaProvenance::Record(path, step, { d }, ""); // keeps its own, both
+  lacuna::Provenance::Record(path, step, { d }, ""); // keeps its own, both
   LACUNA_CHECK(GetBeforePress(path) == "Patient");
   Mark(path, Patient);
   LACUNA_CHECK(coordinates(path) == "Patient" && GetBeforePress(path).empty());
-  vtkLacunaCoordinates::Clear(path);
+  lacuna::Coordinates::Clear(path);
   LACUNA_CHECK(coordinates(path) == "-");
   return lacunaCheck::Result();
 }

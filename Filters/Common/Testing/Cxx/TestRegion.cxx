@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Regions whose numbers make none are refused, and the number at fault is named.
 #include "lacunaCheck.h"
+#include "lacunaImplicitRegion.h"
 #include "vtkBox.h"
 #include "vtkCylinder.h"
 #include "vtkImplicitBoolean.h"
-#include "vtkLacunaRegion.h"
 #include "vtkNew.h"
 #include "vtkPlane.h"
 #include "vtkSphere.h"
@@ -14,7 +14,7 @@
 
 int TestRegion(int, char*[])
 {
-  using vtkLacunaRegion::Check;
+  using lacuna::ImplicitRegion::Check;
   const double nan = std::nan("");
   Check(nullptr, "Region");
 

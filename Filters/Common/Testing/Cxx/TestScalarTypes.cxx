@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "lacunaArrayScalarType.h"
 #include "lacunaCheck.h"
 #include "vtkBitArray.h"
 #include "vtkDataArray.h"
-#include "vtkLacunaScalarType.h"
 #include "vtkNew.h"
 #include "vtkSmartPointer.h"
 
@@ -14,7 +14,7 @@ int TestScalarTypes(int, char*[])
   const auto get = [](int type)
   {
     const auto array = vtkSmartPointer<vtkDataArray>::Take(vtkDataArray::CreateDataArray(type));
-    return vtkLacunaScalarType::Get(array);
+    return lacuna::ArrayScalarType::Get(array);
   };
   // what a kernel sees has the size, the sign and the fractions of what VTK stores
   for (const int type : { VTK_CHAR, VTK_SIGNED_CHAR, VTK_UNSIGNED_CHAR, VTK_SHORT,
@@ -31,15 +31,15 @@ int TestScalarTypes(int, char*[])
         LACUNA_CHECK(Limits::is_signed == (vtkDataArray::GetDataTypeMin(type) < 0));
         LACUNA_CHECK(Limits::is_integer == (type != VTK_FLOAT && type != VTK_DOUBLE));
       });
-    LACUNA_CHECK(get(vtkLacunaScalarType::ToVTK(scalar)) == scalar);
+    LACUNA_CHECK(get(lacuna::ArrayScalarType::ToVTK(scalar)) == scalar);
   }
-  LACUNA_CHECK(vtkLacunaScalarType::ToVTK(ScalarType::UInt8) == VTK_UNSIGNED_CHAR);
-  LACUNA_CHECK(vtkLacunaScalarType::ToVTK(ScalarType::Int16) == VTK_SHORT);
-  LACUNA_CHECK(vtkLacunaScalarType::ToVTK(ScalarType::Float64) == VTK_DOUBLE);
+  LACUNA_CHECK(lacuna::ArrayScalarType::ToVTK(ScalarType::UInt8) == VTK_UNSIGNED_CHAR);
+  LACUNA_CHECK(lacuna::ArrayScalarType::ToVTK(ScalarType::Int16) == VTK_SHORT);
+  LACUNA_CHECK(lacuna::ArrayScalarType::ToVTK(ScalarType::Float64) == VTK_DOUBLE);
 
   vtkNew<vtkBitArray> bits;
-  LACUNA_CHECK_THROWS(vtkLacunaScalarType::Get(bits), "values of type bit");
+  LACUNA_CHECK_THROWS(lacuna::ArrayScalarType::Get(bits), "values of type bit");
   bits->SetName("Stencil");
-  LACUNA_CHECK_THROWS(vtkLacunaScalarType::Get(bits), "'Stencil'");
+  LACUNA_CHECK_THROWS(lacuna::ArrayScalarType::Get(bits), "'Stencil'");
   return lacunaCheck::Result();
 }

@@ -2,11 +2,11 @@
 // A shell with a hole, a piece of thin bone, a head holder and a speck: what is taken away, and that all
 // else stays bit by bit.
 #include "lacunaCheck.h"
+#include "lacunaProvenance.h"
 #include "vtkDataArray.h"
 #include "vtkFieldData.h"
 #include "vtkFlyingEdges3D.h"
 #include "vtkImageData.h"
-#include "vtkLacunaProvenance.h"
 #include "vtkLacunaSkullBone.h"
 #include "vtkMatrix3x3.h"
 #include "vtkNew.h"
@@ -229,7 +229,7 @@ void TestParts(int type, bool isTurned)
     LACUNA_CHECK(
       output->GetDirectionMatrix()->GetData()[e] == head->GetDirectionMatrix()->GetData()[e]);
   }
-  LACUNA_CHECK(vtkLacunaProvenance::Get(output).size() == 1);
+  LACUNA_CHECK(lacuna::Provenance::Get(output).size() == 1);
   Compare(head, output, [](int shape, const double*) { return shape == Shell || shape == Thin; });
 }
 

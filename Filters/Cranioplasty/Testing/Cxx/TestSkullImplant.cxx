@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A shell with two holes: which one is filled, what the outputs hold, and what is refused.
 #include "lacunaCheck.h"
+#include "lacunaProvenance.h"
 #include "vtkCell.h"
 #include "vtkCellData.h"
 #include "vtkFeatureEdges.h"
 #include "vtkFieldData.h"
 #include "vtkFlyingEdges3D.h"
 #include "vtkImageData.h"
-#include "vtkLacunaProvenance.h"
 #include "vtkLacunaSkullImplant.h"
 #include "vtkMassProperties.h"
 #include "vtkNew.h"
@@ -199,7 +199,7 @@ void TestChoice()
   }
   vtkDataArray* numbers = defects->GetCellData()->GetArray("Defect");
   LACUNA_CHECK(numbers && numbers->GetRange()[0] == 1 && numbers->GetRange()[1] == 2);
-  LACUNA_CHECK(!vtkLacunaProvenance::Get(implant).empty());
+  LACUNA_CHECK(!lacuna::Provenance::Get(implant).empty());
 
   filter->SetDefectChoice(vtkLacunaSkullImplant::NearestToPoint);
   filter->SetPoint(Middle[0] + 60 * Small[0], Middle[1] + 60 * Small[1], Middle[2] + 60 * Small[2]);

@@ -2,10 +2,10 @@
 #include "TestRefusals.h"
 #include "TestSolids.h"
 #include "lacunaCheck.h"
+#include "lacunaCoordinates.h"
+#include "lacunaProvenance.h"
 #include "vtkFieldData.h"
-#include "vtkLacunaCoordinates.h"
 #include "vtkLacunaDefectModel.h"
-#include "vtkLacunaProvenance.h"
 #include "vtkStructuredGrid.h"
 
 namespace
@@ -32,14 +32,14 @@ void TestPlace()
     vtkPolyData* solid = filter->GetOutput();
     auto* top = vtkStructuredGrid::SafeDownCast(filter->GetOutputDataObject(1));
     LACUNA_CHECK(IsClosed(solid));
-    const auto matrix = vtkLacunaFieldData::GetMatrix(
-      vtkLacunaFieldData::Get(top, vtkLacunaDefectModel::PressToPatientName, 16, 1), 0);
+    const auto matrix = lacuna::FieldData::GetMatrix(
+      lacuna::FieldData::Get(top, vtkLacunaDefectModel::PressToPatientName, 16, 1), 0);
     LACUNA_CHECK_NEAR(matrix.Determinant3(), 1, 1e-12);
     const Vec3 towardsMill = matrix.Vector({ 0, 0, 1 });
     LACUNA_CHECK_NEAR(lacuna::Dot(towardsMill, geometry.View), -1, 1e-12);
     LACUNA_CHECK_NEAR(lacuna::Dot(matrix.Vector({ 1, 0, 0 }), geometry.Right), 1, 1e-12);
     const lacuna::Matrix4 fromWorld = matrix.Inverse();
-    const double floor = vtkLacunaFieldData::Get(top, "FloorHeight", 1, 1)->GetComponent(0, 0);
+    const double floor = lacuna::FieldData::Get(top, "FloorHeight", 1, 1)->GetComponent(0, 0);
     int dimensions[3];
     top->GetDimensions(dimensions);
     LACUNA_CHECK(top->GetNumberOfPoints() == vtkIdType{ dimensions[0] } * dimensions[1]);
@@ -102,7 +102,7 @@ void TestRecord()
   vtkNew<lacunaCheck::Messages> messages;
   messages->Watch(filter);
   auto map = FilledMap(geometry);
-  vtkLacunaCoordinates::Mark(map, vtkLacunaCoordinates::Patient);
+  lacuna::Coordinates::Mark(map, lacuna::Coordinates::Patient);
   filter->SetInputData(map);
   filter->SetFloorShape(vtkLacunaDefectModel::Parallel);
   filter->SetDefectDepth(3);
@@ -112,12 +112,12 @@ void TestRecord()
   for (int port = 0; port < 2; ++port)
   {
     vtkDataObject* output = filter->GetOutputDataObject(port);
-    const auto steps = vtkLacunaProvenance::Get(output);
+    const auto steps = lacuna::Provenance::Get(output);
     LACUNA_CHECK(!steps.empty() && steps.back().find("DefectDepth=3") != std::string::npos);
     LACUNA_CHECK(!output->GetFieldData()->GetArray("ImageToWorld"));
-    LACUNA_CHECK(vtkLacunaFieldData::Get(output, "DefectCount", 1, 1)->GetComponent(0, 0) == 1);
-    LACUNA_CHECK(vtkLacunaCoordinates::Get(output) == (port ? "Press" : "Patient"));
-    LACUNA_CHECK(vtkLacunaCoordinates::GetBeforePress(output) == (port ? "Patient" : ""));
+    LACUNA_CHECK(lacuna::FieldData::Get(output, "DefectCount", 1, 1)->GetComponent(0, 0) == 1);
+    LACUNA_CHECK(lacuna::Coordinates::Get(output) == (port ? "Press" : "Patient"));
+    LACUNA_CHECK(lacuna::Coordinates::GetBeforePress(output) == (port ? "Patient" : ""));
   }
   filter->SetMargin(2);
   filter->Update(); // another size of the grid
@@ -136,8 +136,8 @@ void TestErrors()
   refuses(
     FilledMap(geometry, [](double x, double) { return x < 0; }), "Fitted is no number", nothing);
   auto perspective = FilledMap(geometry);
-  vtkLacunaFieldData::Set(perspective, "EyePosition", { 0, 0, -500 }, 3);
-  vtkLacunaFieldData::Set(perspective, "ViewAngle", { 20 }, 1);
+  lacuna::FieldData::Set(perspective, "EyePosition", { 0, 0, -500 }, 3);
+  lacuna::FieldData::Set(perspective, "ViewAngle", { 20 }, 1);
   refuses(perspective, "perspective", nothing);
   const auto map = FilledMap(geometry);
   refuses(map, "Margin is -1", [](vtkLacunaDefectModel* f) { f->SetMargin(-1); });

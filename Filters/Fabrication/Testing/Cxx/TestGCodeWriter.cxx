@@ -146,7 +146,7 @@ void TestProgram(const std::string& file)
   for (const char* name : { "ToolRadius", "MachiningTime" })
   {
     changed->DeepCopy(path);
-    vtkLacunaFieldData::Set(changed, name, { std::numeric_limits<double>::infinity() }, 1);
+    lacuna::FieldData::Set(changed, name, { std::numeric_limits<double>::infinity() }, 1);
     writer->SetInputData(changed);
     writer->SetFileName(file.c_str());
     refuses(std::string(name) + " of the path is inf");

@@ -2,11 +2,11 @@
 #include "TestSurfaces.h"
 #include "lacunaCheck.h"
 #include "lacunaIGESParser.h"
+#include "lacunaProvenance.h"
 #include "vtkCallbackCommand.h"
 #include "vtkErrorCode.h"
 #include "vtkFloatArray.h"
 #include "vtkLacunaIGESWriter.h"
-#include "vtkLacunaProvenance.h"
 #include "vtkLogger.h"
 #include "vtkTestErrorObserver.h"
 
@@ -51,7 +51,7 @@ void TestMaps(const std::string& path)
   {
     auto map = Map(Geometry({ 0, 0, -1 }, 0), fitted);
     vtkNew<vtkLacunaIGESWriter> maker; // any algorithm's name will do for the provenance
-    vtkLacunaProvenance::Record(map, maker, {}, "NodeSpacing=1");
+    lacuna::Provenance::Record(map, maker, {}, "NodeSpacing=1");
     vtkNew<vtkLacunaIGESWriter> writer;
     writer->SetInputData(map);
     writer->SetFileName(path.c_str());
@@ -101,7 +101,7 @@ void TestMaps(const std::string& path)
       LACUNA_CHECK_THAT(file.Global[17].size() == 18, "date");
       // who sends it: a program with its version, and nobody
       const auto global = [&](int number) { return IGESParser::String(file.Global[number - 1]); };
-      const std::string version = std::string("Lacuna ") + vtkLacunaProvenance::GetVersion();
+      const std::string version = std::string("Lacuna ") + lacuna::Provenance::GetVersion();
       LACUNA_CHECK(global(3) == "Lacuna" && global(12) == "Lacuna");
       LACUNA_CHECK(global(5) == version && global(6) == version + " IGES Writer");
       LACUNA_CHECK(global(21) == "Lacuna" && global(22) == "Lacuna");

@@ -12,7 +12,7 @@ namespace
 // The outline is where the mask says: within half a pixel's diagonal of the ellipse or the island.
 void CheckOutline(const IGESCurve& curve, vtkImageData* map, double tolerance)
 {
-  const vtkLacunaDepthMap contract(map);
+  const lacuna::DepthMap contract(map);
   const lacuna::Matrix4 toPixel = contract.GetImageToWorld().Inverse();
   double worst = 0;
   double offSurface = 0;
@@ -237,8 +237,8 @@ void TestScrews()
   triangles->InsertNextCell({ 0, 1, 2 });
   plate->SetPolys(triangles);
   Refuses(plate, "has 1 polygons");
-  vtkLacunaFieldData::Set(plate, "HoleCenters", { 1, 2, 3, 4, 5, 6.5 }, 3);
-  vtkLacunaFieldData::Set(plate, "HoleAxes", { 0, 0, 1, 0, -1, 0 }, 3);
+  lacuna::FieldData::Set(plate, "HoleCenters", { 1, 2, 3, 4, 5, 6.5 }, 3);
+  lacuna::FieldData::Set(plate, "HoleAxes", { 0, 0, 1, 0, -1, 0 }, 3);
   Refuses(plate, "write them as STL");
   const Setting skip = [](vtkLacunaIGESWriter* w) { w->SkipUnsupportedOn(); };
   const Outcome outcome = Write(plate, skip);
@@ -251,11 +251,11 @@ void TestScrews()
   LACUNA_CHECK_THAT(NameOf(file, *points[1]) == "Screw hole 2", "name");
   LACUNA_CHECK_THAT(Coordinates(*axes[1], 3) == (lacuna::Vec3{ 4, -5, 6.5 }), "axis");
   LACUNA_CHECK_THAT(axes[1]->Level == 3 && NameOf(file, *axes[1]) == "Screw axis 2", "its name");
-  vtkLacunaFieldData::Set(plate, "HoleAxes", { 0, 0, 1, 0, -2, 0 }, 3);
+  lacuna::FieldData::Set(plate, "HoleAxes", { 0, 0, 1, 0, -2, 0 }, 3);
   Refuses(plate, "screw hole 2 has no finite centre (HoleCenters) or no unit axis", skip);
-  vtkLacunaFieldData::Set(plate, "HoleAxes", { 0, 0, 1, 0.6, -0.8, 0 }, 3);
+  lacuna::FieldData::Set(plate, "HoleAxes", { 0, 0, 1, 0.6, -0.8, 0 }, 3);
   Refuses(plate, "screw hole 2 is not where HoleCenters and HoleAxes say", skip);
-  vtkLacunaFieldData::Set(plate, "HoleAxes", { 0, 0, 1, 0, -1, 0 }, 3);
+  lacuna::FieldData::Set(plate, "HoleAxes", { 0, 0, 1, 0, -1, 0 }, 3);
 
   // field data stay where they were when Transform moves the plate
   using lacuna::Matrix4;

@@ -3,9 +3,9 @@
 // take no file.
 #include "TestBadPlaces.h"
 #include "TestIGESContent.h"
+#include "lacunaCoordinates.h"
 #include "lacunaMatrix4.h"
-#include "vtkLacunaCoordinates.h"
-#include "vtkLacunaProvenance.h"
+#include "lacunaProvenance.h"
 #include "vtkPartitionedDataSetCollection.h"
 #include "vtkStringArray.h"
 #include "vtkUnstructuredGrid.h"
@@ -20,8 +20,8 @@ void TestGroups()
   auto grid = TestSurfaces::Grid(1, points);
   auto map = DefectMap();
   vtkNew<vtkLacunaIGESWriter> maker; // any algorithm's name will do for the provenance
-  vtkLacunaProvenance::Record(map, maker, {}, "Of=map");
-  vtkLacunaProvenance::Record(grid, maker, {}, "Of=grid");
+  lacuna::Provenance::Record(map, maker, {}, "Of=map");
+  lacuna::Provenance::Record(grid, maker, {}, "Of=grid");
   vtkNew<vtkPolyData> nothing;
   auto inner = Group({ { "Bar", grid }, { "", nothing }, { "", Lines(Corners, { { 0, 1, 2 } }) } });
   const Outcome outcome =
@@ -85,7 +85,7 @@ void TestGroups()
 //------------------------------------------------------------------------------
 void SetPress(vtkDataObject* data, const lacuna::Matrix4& matrix)
 {
-  vtkLacunaFieldData::SetMatrices(data, "PressToPatient", { matrix });
+  lacuna::FieldData::SetMatrices(data, "PressToPatient", { matrix });
 }
 
 void TestFrames()
@@ -160,7 +160,7 @@ void TestFrames()
 // The file says DICOM LPS only of data that are marked as the patient's.
 void TestWhose()
 {
-  using namespace vtkLacunaCoordinates;
+  using namespace lacuna::Coordinates;
   const auto start = [](vtkDataObject* data, int frame)
   {
     std::string text;
@@ -232,11 +232,11 @@ void TestMoved()
   };
   std::vector<lacuna::Vec3> points;
   vtkNew<vtkImageData> patient;
-  vtkLacunaCoordinates::Mark(patient, vtkLacunaCoordinates::Patient);
+  lacuna::Coordinates::Mark(patient, lacuna::Coordinates::Patient);
   const auto press = [&](vtkPointSet* data, const Matrix4& move)
   {
     SetPress(data, Matrix4::Translation({ 10, -20, 30 }));
-    vtkLacunaCoordinates::MarkPress(patient, data);
+    lacuna::Coordinates::MarkPress(patient, data);
     TestSurfaces::RecordAndMove(data, move);
   };
   const auto frame = [](int which)
@@ -284,8 +284,8 @@ void TestMoved()
 
   // a path over a mould that had been moved
   auto path = Lines(Corners, { { 0, 1, 2, 3 } });
-  vtkLacunaCoordinates::Mark(path, vtkLacunaCoordinates::Press);
-  vtkLacunaFieldData::Set(path, "MovedSincePress", { 50 }, 1);
+  lacuna::Coordinates::Mark(path, lacuna::Coordinates::Press);
+  lacuna::FieldData::Set(path, "MovedSincePress", { 50 }, 1);
   LACUNA_CHECK_CONTAINS(start(Write(path)), "NOT KNOWN: what it is made of was MOVED since");
   for (const int which : { 1, 2 })
   {
@@ -315,13 +315,13 @@ void TestMoved()
 void TestMirrored()
 {
   auto map = DefectMap();
-  vtkLacunaFieldData::Set(map, "Mirrored", { 1 }, 1);
+  lacuna::FieldData::Set(map, "Mirrored", { 1 }, 1);
   auto group = Group({ { "Other side", map } });
   Refuses(map, "mirror image");
   Refuses(group, "block 'Other side' is a mirror image");
   LACUNA_CHECK_THAT(
     Write(group, [](vtkLacunaIGESWriter* w) { w->AllowMirroredOn(); }).Surfaces == 1, "allowed");
-  vtkLacunaFieldData::Set(map, "Mirrored", { 0 }, 1);
+  lacuna::FieldData::Set(map, "Mirrored", { 0 }, 1);
   LACUNA_CHECK_THAT(Write(map).Surfaces == 1, "not mirrored");
 }
 

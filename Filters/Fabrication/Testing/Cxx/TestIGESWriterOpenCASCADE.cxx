@@ -172,7 +172,7 @@ void TestMaps(const std::string& path)
           gp_Vec du;
           gp_Vec dv;
           BRepAdaptor_Surface(face).D1(20, 15, p, du, dv);
-          const vtkLacunaDepthMap::Geometry g = Geometry(view, turn);
+          const lacuna::DepthMap::Geometry g = Geometry(view, turn);
           const gp_Vec along(g.View[0], g.View[1], g.View[2]);
           const gp_Vec right(g.Right[0], g.Right[1], g.Right[2]);
           const gp_Vec down(g.Down[0], g.Down[1], g.Down[2]);

@@ -2,10 +2,10 @@
 #include "TestRefusals.h"
 #include "TestSolids.h"
 #include "lacunaCheck.h"
+#include "lacunaProvenance.h"
 #include "vtkCellData.h"
 #include "vtkFieldData.h"
 #include "vtkLacunaImplantPlate.h"
-#include "vtkLacunaProvenance.h"
 #include "vtkPolyData.h"
 #include "vtkUnsignedCharArray.h"
 
@@ -28,7 +28,7 @@ void TestPlace()
 {
   int turn = 0;
   vtkNew<vtkPolyData> first;
-  vtkLacunaDepthMap::Geometry firstGeometry{};
+  lacuna::DepthMap::Geometry firstGeometry{};
   for (const Vec3& view : Views)
   {
     const auto geometry = TestSurfaces::Geometry(view, 0.4 * turn++);
@@ -140,7 +140,7 @@ void TestHoles()
     LACUNA_CHECK(std::abs(GetWinding(plate, center - 0.35 * axis + 1.0 * beside) - 1) < 1e-6);
   }
   LACUNA_CHECK(std::abs(GetField(plate, "Mass") - 1.3e-3 * GetField(plate, "Volume")) < 1e-12);
-  const auto steps = vtkLacunaProvenance::Get(plate);
+  const auto steps = lacuna::Provenance::Get(plate);
   LACUNA_CHECK(!steps.empty() && steps.back().find("HoleDiameter=1.6") != std::string::npos);
 
   // bone that was not measured is not passed over
@@ -212,7 +212,7 @@ void TestMarks()
     centers->GetTuple(k, center.data());
     LACUNA_CHECK_NEAR(lacuna::Norm(center - expected[k]), 0.7, 0.05);
   }
-  const auto steps = vtkLacunaProvenance::Get(plate);
+  const auto steps = lacuna::Provenance::Get(plate);
   LACUNA_CHECK(!steps.empty() && steps.back().find("HolePoints=") != std::string::npos);
 
   points->InsertPoint(19, std::nan(""), 0, 0);
@@ -268,8 +268,8 @@ void TestErrors()
   holed->GetPointData()->GetArray("Fitted")->SetComponent(90 * 15 + 20, 0, TestSurfaces::NaN);
   refuses(holed, "Fitted has a hole", nothing);
   auto perspective = FilledMap(geometry);
-  vtkLacunaFieldData::Set(perspective, "EyePosition", { 0, 0, -500 }, 3);
-  vtkLacunaFieldData::Set(perspective, "ViewAngle", { 20 }, 1);
+  lacuna::FieldData::Set(perspective, "EyePosition", { 0, 0, -500 }, 3);
+  lacuna::FieldData::Set(perspective, "ViewAngle", { 20 }, 1);
   refuses(perspective, "perspective", nothing);
   const auto map = FilledMap(geometry);
   refuses(map, "Thickness is -1", [](vtkLacunaImplantPlate* f) { f->SetThickness(-1); });

@@ -4,10 +4,10 @@
 #ifndef TestMillingMould_h
 #define TestMillingMould_h
 
+#include "lacunaFieldData.h"
 #include "lacunaMatrix4.h"
 #include "vtkDataArray.h"
 #include "vtkFieldData.h"
-#include "vtkLacunaFieldData.h"
 #include "vtkLacunaMillingToolPath.h"
 #include "vtkLogger.h"
 #include "vtkNew.h"
@@ -49,7 +49,7 @@ inline vtkSmartPointer<vtkStructuredGrid> Mould(
   }
   grid->SetPoints(points);
   lacuna::Matrix4 press = lacuna::Matrix4::Rotation({ 1, 2, 3 }, 0.7);
-  vtkLacunaFieldData::SetMatrices(grid, "PressToPatient", { press });
+  lacuna::FieldData::SetMatrices(grid, "PressToPatient", { press });
   return grid;
 }
 

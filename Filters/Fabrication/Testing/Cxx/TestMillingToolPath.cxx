@@ -2,10 +2,10 @@
 #include "TestMillingMould.h"
 #include "TestSurfaces.h"
 #include "lacunaCheck.h"
+#include "lacunaProvenance.h"
 #include "lacunaVector.h"
 #include "vtkCellArray.h"
 #include "vtkCellArrayIterator.h"
-#include "vtkLacunaProvenance.h"
 #include "vtkPointData.h"
 
 #include <algorithm>
@@ -94,7 +94,7 @@ void TestPath()
   {
     vtkDataArray* matrix = output->GetFieldData()->GetArray("PressToPatient");
     LACUNA_CHECK(matrix && matrix->GetNumberOfComponents() == 16);
-    const auto steps = vtkLacunaProvenance::Get(output);
+    const auto steps = lacuna::Provenance::Get(output);
     LACUNA_CHECK(steps.size() == 1 && steps[0].find("RoughingStep=2") != std::string::npos);
   }
   std::ostringstream text;
@@ -158,7 +158,7 @@ void TestWarnsAndRefuses()
   refuses(TestSurfaces::PixelGrid(map, lacuna::Matrix4::Translation({ 3, 4, 5 }), false, 0),
     "Take Transform out of the pipeline");
   auto wrong = Mould();
-  vtkLacunaFieldData::Set(wrong, "PressToPatient", { 1, 2, 3 }, 3);
+  lacuna::FieldData::Set(wrong, "PressToPatient", { 1, 2, 3 }, 3);
   refuses(wrong, "PressToPatient");
   using Filter = vtkLacunaMillingToolPath;
   refuses(Mould(), "ToolShape", [](Filter* f) { f->SetToolShape(2); });

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "TestMillingMould.h"
 #include "lacunaCheck.h"
+#include "lacunaCoordinates.h"
+#include "lacunaMirrored.h"
 #include "vtkDoubleArray.h"
 #include "vtkImageData.h"
-#include "vtkLacunaCoordinates.h"
 #include "vtkLacunaGCodeWriter.h"
-#include "vtkLacunaMirrored.h"
 #include "vtkPointData.h"
 
 #include <vtksys/SystemTools.hxx>
@@ -22,15 +22,15 @@ namespace
 void TestMirrored(const std::string& file)
 {
   const auto mould = Mould();
-  vtkLacunaMirrored::Mark(mould, { 1, 2, 3 }, { 1, 0, 0 });
+  lacuna::Mirrored::Mark(mould, { 1, 2, 3 }, { 1, 0, 0 });
   vtkNew<vtkLacunaMillingToolPath> filter;
   filter->SetInputData(mould);
   filter->SetOverrun(4);
   auto messages = lacunaCheck::Watch(filter);
   filter->Update();
   LACUNA_CHECK_CONTAINS(messages->Warnings, "mirror image");
-  LACUNA_CHECK(vtkLacunaMirrored::IsMarked(filter->GetOutput()));
-  LACUNA_CHECK(vtkLacunaMirrored::IsMarked(filter->GetOutputDataObject(1)));
+  LACUNA_CHECK(lacuna::Mirrored::IsMarked(filter->GetOutput()));
+  LACUNA_CHECK(lacuna::Mirrored::IsMarked(filter->GetOutputDataObject(1)));
   vtkNew<vtkLacunaGCodeWriter> writer;
   writer->SetInputConnection(filter->GetOutputPort());
   writer->SetFileName(file.c_str());
@@ -136,8 +136,8 @@ void TestMovedMould(const std::string& file)
   {
     const auto mould = Mould(height);
     vtkNew<vtkImageData> patient;
-    vtkLacunaCoordinates::Mark(patient, vtkLacunaCoordinates::Patient);
-    vtkLacunaCoordinates::MarkPress(patient, mould);
+    lacuna::Coordinates::Mark(patient, lacuna::Coordinates::Patient);
+    lacuna::Coordinates::MarkPress(patient, mould);
     vtkNew<vtkDoubleArray> made;
     made->SetName("PressPosition");
     made->SetNumberOfComponents(4);
@@ -173,8 +173,8 @@ void TestMovedMould(const std::string& file)
     for (vtkDataObject* output : { filter->GetOutputDataObject(0), filter->GetOutputDataObject(1) })
     {
       LACUNA_CHECK(output->GetFieldData()->HasArray("PressToPatient") == !moved);
-      LACUNA_CHECK(vtkLacunaCoordinates::Get(output) == vtkLacunaCoordinates::Press);
-      LACUNA_CHECK(vtkLacunaCoordinates::GetBeforePress(output) == (moved ? "" : "Patient"));
+      LACUNA_CHECK(lacuna::Coordinates::Get(output) == lacuna::Coordinates::Press);
+      LACUNA_CHECK(lacuna::Coordinates::GetBeforePress(output) == (moved ? "" : "Patient"));
       LACUNA_CHECK((Field(output, "MovedSincePress") > 0.4) == moved);
     }
     vtkNew<vtkLacunaGCodeWriter> writer;

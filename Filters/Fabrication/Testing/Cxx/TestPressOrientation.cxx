@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "TestSolids.h"
 #include "lacunaCheck.h"
+#include "lacunaCoordinates.h"
+#include "lacunaMirrored.h"
+#include "lacunaProvenance.h"
 #include "vtkFieldData.h"
 #include "vtkInformation.h"
-#include "vtkLacunaCoordinates.h"
-#include "vtkLacunaMirrored.h"
 #include "vtkLacunaPressOrientation.h"
-#include "vtkLacunaProvenance.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkStringArray.h"
 #include "vtkUnsignedCharArray.h"
@@ -22,12 +22,12 @@ using TestSolids::IsLetter;
 using TestSolids::Views;
 
 // With the plane of the fit.
-vtkSmartPointer<vtkImageData> FilledMap(const vtkLacunaDepthMap::Geometry& geometry,
+vtkSmartPointer<vtkImageData> FilledMap(const lacuna::DepthMap::Geometry& geometry,
   const std::function<bool(double, double)>& inside = IsLetter)
 {
   auto map = TestSolids::FilledMap(geometry, inside);
   const Vec3 normal = lacuna::Normalized({ 0.1, -0.2, -1 });
-  vtkLacunaFieldData::Set(map, "PlaneNormal", { normal[0], normal[1], normal[2] }, 3);
+  lacuna::FieldData::Set(map, "PlaneNormal", { normal[0], normal[1], normal[2] }, 3);
   return map;
 }
 
@@ -40,8 +40,8 @@ double GetField(vtkDataObject* data, const char* name, int component = 0)
 
 Matrix4 GetPressToPatient(vtkDataObject* data)
 {
-  return vtkLacunaFieldData::GetMatrix(
-    vtkLacunaFieldData::Get(data, vtkLacunaPressOrientation::PressToPatientName, 16, 1), 0);
+  return lacuna::FieldData::GetMatrix(
+    lacuna::FieldData::Get(data, vtkLacunaPressOrientation::PressToPatientName, 16, 1), 0);
 }
 
 vtkSmartPointer<vtkLacunaPressOrientation> MakeFilter(vtkImageData* map)
@@ -112,7 +112,7 @@ void TestPlace()
 }
 
 // The map with a linear surface in the place of the fitted one.
-vtkSmartPointer<vtkImageData> PlaneMap(const vtkLacunaDepthMap::Geometry& geometry)
+vtkSmartPointer<vtkImageData> PlaneMap(const lacuna::DepthMap::Geometry& geometry)
 {
   auto map = FilledMap(geometry);
   vtkDataArray* fitted = map->GetPointData()->GetArray("Fitted");
@@ -128,7 +128,7 @@ vtkSmartPointer<vtkImageData> PlaneMap(const vtkLacunaDepthMap::Geometry& geomet
 
 // How far, in mm, the mould's true surface is at most from where it should be: offset towards the
 // viewer from the plane of PlaneMap.
-double OffPlane(vtkStructuredGrid* grid, const vtkLacunaDepthMap::Geometry& geometry, double offset)
+double OffPlane(vtkStructuredGrid* grid, const lacuna::DepthMap::Geometry& geometry, double offset)
 {
   const double rise = std::sqrt(1 + 0.01 + 0.04);
   const Matrix4 back = GetPressToPatient(grid);
@@ -257,17 +257,17 @@ void TestPipeline()
   int own[6];
   filter->GetOutput()->GetExtent(own);
   LACUNA_CHECK(std::equal(extent, extent + 6, own) && own[1] > 0 && own[4] == 0 && own[5] == 0);
-  const auto steps = vtkLacunaProvenance::Get(filter->GetOutput());
+  const auto steps = lacuna::Provenance::Get(filter->GetOutput());
   LACUNA_CHECK(!steps.empty() && steps.back().find("PlateMargin=0.5") != std::string::npos);
   LACUNA_CHECK(!filter->GetOutput()->GetFieldData()->GetArray("ImageToWorld"));
   // whose coordinates PressToPatient leads to: nobody's before the map says so
-  LACUNA_CHECK(vtkLacunaCoordinates::Get(filter->GetOutput()) == "Press");
-  LACUNA_CHECK(vtkLacunaCoordinates::GetBeforePress(filter->GetOutput()).empty());
-  vtkLacunaCoordinates::Mark(map, vtkLacunaCoordinates::Patient);
+  LACUNA_CHECK(lacuna::Coordinates::Get(filter->GetOutput()) == "Press");
+  LACUNA_CHECK(lacuna::Coordinates::GetBeforePress(filter->GetOutput()).empty());
+  lacuna::Coordinates::Mark(map, lacuna::Coordinates::Patient);
   map->Modified();
   filter->Update();
-  LACUNA_CHECK(vtkLacunaCoordinates::Get(filter->GetOutput()) == "Press");
-  LACUNA_CHECK(vtkLacunaCoordinates::GetBeforePress(filter->GetOutput()) == "Patient");
+  LACUNA_CHECK(lacuna::Coordinates::Get(filter->GetOutput()) == "Press");
+  LACUNA_CHECK(lacuna::Coordinates::GetBeforePress(filter->GetOutput()) == "Patient");
   // x runs fastest and both spacings are the same everywhere
   for (vtkIdType k = 1; k < filter->GetOutput()->GetNumberOfPoints(); ++k)
   {
@@ -297,10 +297,10 @@ void TestPipeline()
   const auto wall = [&]()
   {
     filter->Update();
-    return vtkLacunaFieldData::Find(filter->GetOutput(), "DraftAngle", 1, 1)->GetTuple1(0);
+    return lacuna::FieldData::Find(filter->GetOutput(), "DraftAngle", 1, 1)->GetTuple1(0);
   };
   filter->SetBlockSize(0, 0, 0);
-  vtkLacunaFieldData::Set(map, "PlaneNormal", { std::sin(0.3), 0, -std::cos(0.3) }, 3);
+  lacuna::FieldData::Set(map, "PlaneNormal", { std::sin(0.3), 0, -std::cos(0.3) }, 3);
   map->Modified();
   const double askew = wall();
   LACUNA_CHECK(messages->HasWarning("is inclined by"));
@@ -329,7 +329,7 @@ void TestUndercut()
   const auto setPlane = [&map](const Vec3& n)
   {
     const Vec3 normal = lacuna::Normalized(n);
-    vtkLacunaFieldData::Set(map, "PlaneNormal", { normal[0], normal[1], normal[2] }, 3);
+    lacuna::FieldData::Set(map, "PlaneNormal", { normal[0], normal[1], normal[2] }, 3);
     map->Modified();
   };
   const auto filter = MakeFilter(map);
@@ -424,21 +424,21 @@ void TestErrors()
     90 * 15 + 20, 0, std::numeric_limits<double>::infinity());
   refuses(endless, "Fitted has a hole", nothing);
   auto perspective = FilledMap(geometry);
-  vtkLacunaFieldData::Set(perspective, "EyePosition", { 0, 0, -500 }, 3);
-  vtkLacunaFieldData::Set(perspective, "ViewAngle", { 20 }, 1);
+  lacuna::FieldData::Set(perspective, "EyePosition", { 0, 0, -500 }, 3);
+  lacuna::FieldData::Set(perspective, "ViewAngle", { 20 }, 1);
   refuses(perspective, "perspective", nothing);
   auto edge = FilledMap(geometry);
-  vtkLacunaFieldData::Set(edge, "PlaneNormal", { 1, 0, 0 }, 3);
+  lacuna::FieldData::Set(edge, "PlaneNormal", { 1, 0, 0 }, 3);
   refuses(edge, "stands on edge", nothing);
-  vtkLacunaFieldData::Set(edge, "PlaneNormal", { TestSurfaces::NaN, 0, -1 }, 3);
+  lacuna::FieldData::Set(edge, "PlaneNormal", { TestSurfaces::NaN, 0, -1 }, 3);
   refuses(edge, "not a number", nothing);
-  vtkLacunaFieldData::Set(edge, "PlaneNormal", { 0, -1 }, 2);
+  lacuna::FieldData::Set(edge, "PlaneNormal", { 0, -1 }, 2);
   refuses(edge, "PlaneNormal", nothing);
   auto mirrored = FilledMap(
     { geometry.Origin, -1.0 * geometry.Right, geometry.Down, geometry.View, { 0.5, 0.75 } });
   refuses(mirrored, "mirror", nothing);
   auto marked = FilledMap(geometry);
-  vtkLacunaMirrored::Mark(marked, { 1, 2, 3 }, { 1, 0, 0 });
+  lacuna::Mirrored::Mark(marked, { 1, 2, 3 }, { 1, 0, 0 });
   refuses(marked, "mirror image (field data Mirrored)", nothing);
   const auto map = FilledMap(geometry);
   using Filter = vtkLacunaPressOrientation;

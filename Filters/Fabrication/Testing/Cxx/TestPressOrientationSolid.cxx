@@ -2,11 +2,11 @@
 // Moulds of solids: on the known surface, in the right place, and clear words where none can be.
 #include "TestShells.h"
 #include "lacunaCheck.h"
+#include "lacunaCoordinates.h"
+#include "lacunaFieldData.h"
+#include "lacunaMirrored.h"
 #include "lacunaPlanarCurves.h"
 #include "vtkDataArray.h"
-#include "vtkLacunaCoordinates.h"
-#include "vtkLacunaFieldData.h"
-#include "vtkLacunaMirrored.h"
 #include "vtkLacunaPressOrientation.h"
 #include "vtkLogger.h"
 #include "vtkPointData.h"
@@ -25,14 +25,14 @@ using lacuna::Vec3;
 
 double GetField(vtkDataObject* data, const char* name)
 {
-  vtkDataArray* array = vtkLacunaFieldData::Find(data, name, 1, 1);
+  vtkDataArray* array = lacuna::FieldData::Find(data, name, 1, 1);
   return array ? array->GetComponent(0, 0) : std::nan("");
 }
 
 Matrix4 GetPressToPatient(vtkDataObject* data)
 {
-  return vtkLacunaFieldData::GetMatrix(
-    vtkLacunaFieldData::Get(data, vtkLacunaPressOrientation::PressToPatientName, 16, 1), 0);
+  return lacuna::FieldData::GetMatrix(
+    lacuna::FieldData::Get(data, vtkLacunaPressOrientation::PressToPatientName, 16, 1), 0);
 }
 
 // mm from the ellipsoid, outwards; exact near it.
@@ -58,7 +58,7 @@ void TestPlace()
     Matrix4::Translation({ 40, -110, 250 }) * Matrix4::Rotation({ 0.3, -0.5, 0.8 }, 2.1);
   const Matrix4 back = shell.ToWorld.Inverse();
   const auto solid = TestShells::Make(shell);
-  vtkLacunaCoordinates::Mark(solid, vtkLacunaCoordinates::Patient);
+  lacuna::Coordinates::Mark(solid, lacuna::Coordinates::Patient);
   const lacuna::Loop outline = TestShells::Outlines(shell).front();
   for (const int mould : { vtkLacunaPressOrientation::Female, vtkLacunaPressOrientation::Male })
   {
@@ -76,7 +76,7 @@ void TestPlace()
       vtkStructuredGrid* grid = press->GetOutput();
       LACUNA_CHECK_NEAR(GetField(grid, "SingleValued"), 1, 0);
       LACUNA_CHECK(GetField(grid, "FaceDeviation") < 0.005);
-      LACUNA_CHECK(vtkLacunaCoordinates::GetBeforePress(grid) == vtkLacunaCoordinates::Patient);
+      LACUNA_CHECK(lacuna::Coordinates::GetBeforePress(grid) == lacuna::Coordinates::Patient);
       const Matrix4 toPatient = GetPressToPatient(grid);
       LACUNA_CHECK_NEAR(toPatient.Determinant3(), 1, 1e-12);
       const double wanted = (mould == vtkLacunaPressOrientation::Female ? 0.7 : 0) -
@@ -206,7 +206,7 @@ void TestRefusals()
     LACUNA_CHECK(press->GetOutput()->GetNumberOfPoints() == 0);
   };
   auto cap = MakeCap(30);
-  vtkLacunaMirrored::Mark(cap, { 0, 0, 0 }, { 1, 0, 0 });
+  lacuna::Mirrored::Mark(cap, { 0, 0, 0 }, { 1, 0, 0 });
   refuses(cap, "mirror image");
   cap = MakeCap(30);
   cap->GetCellData()->GetArray(0)->SetName("Other");

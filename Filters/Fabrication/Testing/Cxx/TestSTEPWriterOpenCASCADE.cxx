@@ -2,9 +2,9 @@
 // OpenCASCADE reads the files back, in another program than the one that wrote them.
 #include "lacunaCheck.h"
 #include "lacunaMeshShapes.h"
+#include "lacunaMirrored.h"
 #include "vtkCellArray.h"
 #include "vtkErrorCode.h"
-#include "vtkLacunaMirrored.h"
 #include "vtkLacunaSTEPWriter.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
@@ -223,7 +223,7 @@ void CheckRefusals(const std::string& folder)
   open.Triangles.pop_back();
   CheckRefused(MakeSurface(open), path, "open: 3 edges");
   const auto mirrored = MakeSurface(box);
-  vtkLacunaMirrored::Mark(mirrored, { 0, 0, 0 }, { 1, 0, 0 });
+  lacuna::Mirrored::Mark(mirrored, { 0, 0, 0 }, { 1, 0, 0 });
   CheckRefused(mirrored, path, "mirror image of the patient");
   const auto lines = MakeSurface(box);
   vtkNew<vtkCellArray> line;

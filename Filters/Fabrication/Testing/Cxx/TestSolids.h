@@ -43,19 +43,19 @@ inline double Y(int j)
 }
 
 // At pixel i, j, so deep.
-inline lacuna::Vec3 Place(const vtkLacunaDepthMap::Geometry& geometry, int i, int j, double depth)
+inline lacuna::Vec3 Place(const lacuna::DepthMap::Geometry& geometry, int i, int j, double depth)
 {
   return geometry.Origin + 0.5 * i * geometry.Right + 0.75 * j * geometry.Down +
     depth * geometry.View;
 }
 
 // The map of TestSurfaces with the letter as filled defect and bone that grows thinner to the right.
-inline vtkSmartPointer<vtkImageData> FilledMap(const vtkLacunaDepthMap::Geometry& geometry,
+inline vtkSmartPointer<vtkImageData> FilledMap(const lacuna::DepthMap::Geometry& geometry,
   const std::function<bool(double, double)>& inside = IsLetter)
 {
   auto map = TestSurfaces::Map(geometry, true);
   vtkNew<vtkCharArray> filled;
-  filled->SetName(vtkLacunaDepthMap::FilledMaskName);
+  filled->SetName(lacuna::DepthMap::FilledMaskName);
   vtkNew<vtkDoubleArray> thickness;
   thickness->SetName("Thickness");
   for (int j = -3; j <= 66; ++j)

@@ -4,12 +4,12 @@
 #ifndef TestSurfaces_h
 #define TestSurfaces_h
 
+#include "lacunaDepthMap.h"
+#include "lacunaFieldData.h"
 #include "vtkCharArray.h"
 #include "vtkDoubleArray.h"
 #include "vtkFieldData.h"
 #include "vtkImageData.h"
-#include "vtkLacunaDepthMap.h"
-#include "vtkLacunaFieldData.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
 #include "vtkPoints.h"
@@ -33,7 +33,7 @@ inline double Depth(double x, double y)
 }
 
 /// The geometry of a map seen along the view, turned by an angle about it.
-inline vtkLacunaDepthMap::Geometry Geometry(const lacuna::Vec3& view, double turn)
+inline lacuna::DepthMap::Geometry Geometry(const lacuna::Vec3& view, double turn)
 {
   const lacuna::Matrix4 rotation = lacuna::Matrix4::Rotation(view, turn);
   const lacuna::Vec3 z = lacuna::Normalized(view);
@@ -46,15 +46,15 @@ inline vtkLacunaDepthMap::Geometry Geometry(const lacuna::Vec3& view, double tur
 /// A map of 90 x 70 pixels whose extent starts at (5, -3). With fitted, Fitted is a number on
 /// columns 20..79 and rows 10..49 only, and Depth has a hole.
 inline vtkSmartPointer<vtkImageData> Map(
-  const vtkLacunaDepthMap::Geometry& geometry, bool fitted, bool perspective = false)
+  const lacuna::DepthMap::Geometry& geometry, bool fitted, bool perspective = false)
 {
   auto map = vtkSmartPointer<vtkImageData>::New();
   map->SetExtent(5, 94, -3, 66, 0, 0);
-  vtkLacunaDepthMap::SetGeometry(map, geometry);
+  lacuna::DepthMap::SetGeometry(map, geometry);
   vtkNew<vtkDoubleArray> depth;
-  depth->SetName(vtkLacunaDepthMap::DepthName);
+  depth->SetName(lacuna::DepthMap::DepthName);
   vtkNew<vtkDoubleArray> fit;
-  fit->SetName(vtkLacunaDepthMap::FittedName);
+  fit->SetName(lacuna::DepthMap::FittedName);
   for (int j = -3; j <= 66; ++j)
   {
     for (int i = 5; i <= 94; ++i)
@@ -73,8 +73,8 @@ inline vtkSmartPointer<vtkImageData> Map(
   {
     const lacuna::Vec3 eye =
       geometry.Origin + 20.0 * geometry.Right + 25.0 * geometry.Down + -150.0 * geometry.View;
-    vtkLacunaFieldData::Set(map, vtkLacunaDepthMap::EyePositionName, { eye[0], eye[1], eye[2] }, 3);
-    vtkLacunaFieldData::Set(map, vtkLacunaDepthMap::ViewAngleName, { 30 }, 1);
+    lacuna::FieldData::Set(map, lacuna::DepthMap::EyePositionName, { eye[0], eye[1], eye[2] }, 3);
+    lacuna::FieldData::Set(map, lacuna::DepthMap::ViewAngleName, { 30 }, 1);
   }
   return map;
 }
@@ -83,7 +83,7 @@ inline vtkSmartPointer<vtkImageData> Map(
 inline void Fill(vtkImageData* map, const std::function<bool(int i, int j)>& filled)
 {
   vtkNew<vtkCharArray> mask;
-  mask->SetName(vtkLacunaDepthMap::FilledMaskName);
+  mask->SetName(lacuna::DepthMap::FilledMaskName);
   for (int j = -3; j <= 66; ++j)
   {
     for (int i = 5; i <= 94; ++i)
@@ -106,7 +106,7 @@ inline bool Defect(int i, int j)
 /// The surface points that are to be written of a Map, column fastest.
 inline std::vector<lacuna::Vec3> Points(vtkImageData* image, bool fitted)
 {
-  const vtkLacunaDepthMap map(image);
+  const lacuna::DepthMap map(image);
   std::vector<lacuna::Vec3> points;
   for (int j = fitted ? 10 : -3; j <= (fitted ? 49 : 66); ++j)
   {
@@ -150,7 +150,7 @@ inline vtkSmartPointer<vtkStructuredGrid> Grid(int flat, std::vector<lacuna::Vec
 inline vtkSmartPointer<vtkStructuredGrid> PixelGrid(
   vtkImageData* image, const lacuna::Matrix4& move, bool depths, double height)
 {
-  const lacuna::Matrix4 matrix = vtkLacunaDepthMap(image).GetImageToWorld();
+  const lacuna::Matrix4 matrix = lacuna::DepthMap(image).GetImageToWorld();
   auto grid = vtkSmartPointer<vtkStructuredGrid>::New();
   grid->SetDimensions(90, 70, 1);
   vtkNew<vtkPoints> points; // single precision

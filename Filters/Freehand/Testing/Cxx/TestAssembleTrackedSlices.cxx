@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// Ports, arrays, extents and time steps of vtkLacunaAssembleTrackedSlices.
+#include "lacunaProvenance.h"
 #include "lacunaTestPoses.h"
+#include "lacunaTrackedSlices.h"
 #include "vtkImageAlgorithm.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
-#include "vtkLacunaProvenance.h"
-#include "vtkLacunaTrackedSlices.h"
 #include "vtkObjectFactory.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 
@@ -23,7 +23,7 @@ void TestContract()
   const auto filter = MakeFilter(stack, table, [](auto* f) { f->SetGateRange(0, 0.6); });
   filter->Update();
   vtkImageData* slices = filter->GetOutput();
-  const vtkLacunaTrackedSlices tracked(slices); // throws unless the contract is kept
+  const lacuna::TrackedSlices tracked(slices); // throws unless the contract is kept
   LACUNA_CHECK(tracked.GetNumberOfSlices() == 3);
   LACUNA_CHECK(slices->GetOrigin()[0] == 0 && slices->GetOrigin()[2] == 0);
   LACUNA_CHECK(slices->GetSpacing()[0] == 1 && slices->GetSpacing()[1] == 1);
@@ -43,7 +43,7 @@ void TestContract()
   LACUNA_CHECK(slices->GetFieldData()->GetArray("Gate")->GetTuple1(1) == 0.5);
   LACUNA_CHECK(slices->GetFieldData()->GetArray("ProbeToReference")->GetNumberOfTuples() == 3);
   LACUNA_CHECK(slices->GetFieldData()->GetArray("ImageToProbe")->GetNumberOfTuples() == 1);
-  const std::vector<std::string> steps = vtkLacunaProvenance::Get(slices);
+  const std::vector<std::string> steps = lacuna::Provenance::Get(slices);
   LACUNA_CHECK(steps.size() == 1 && steps[0].find("PixelSpacing=0.5,0.5") != std::string::npos);
 }
 

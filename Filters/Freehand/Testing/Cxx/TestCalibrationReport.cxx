@@ -320,7 +320,7 @@ void TestStylus()
     std::remove(name.c_str());
     const Calibrated found = Calibrate(slices, nullptr, pivot);
     LACUNA_CHECK_THAT(found.Errors.empty(), found.Errors);
-    vtkDataArray* place = vtkLacunaFieldData::Get(found.Slices, "StylusTip", 3, 1);
+    vtkDataArray* place = lacuna::FieldData::Get(found.Slices, "StylusTip", 3, 1);
     const Vec3 error =
       Vec3{ place->GetComponent(0, 0), place->GetComponent(0, 1), place->GetComponent(0, 2) } - tip;
     LACUNA_CHECK(lacuna::Norm(error) < 0.2);

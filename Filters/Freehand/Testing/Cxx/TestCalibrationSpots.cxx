@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// Spots found by vtkLacunaProbeCalibration: crops, flags, threads, given picks, what cannot be.
 #include "lacunaCheck.h"
+#include "lacunaFieldData.h"
+#include "lacunaTrackedSlices.h"
 #include "vtkDataArray.h"
 #include "vtkFieldData.h"
 #include "vtkImageData.h"
-#include "vtkLacunaFieldData.h"
 #include "vtkLacunaProbeCalibration.h"
-#include "vtkLacunaTrackedSlices.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
 #include "vtkPoints.h"
@@ -47,7 +47,7 @@ vtkSmartPointer<vtkImageData> MakeStack(const std::vector<int>& withoutImage = {
   std::mt19937 random(1);
   std::vector<Matrix4> poses;
   vtkNew<vtkUnsignedCharArray> status;
-  status->SetName(vtkLacunaTrackedSlices::SliceStatusName);
+  status->SetName(lacuna::TrackedSlices::SliceStatusName);
   const Matrix4 probeToScan =
     Matrix4::Rotation({ 1, 2, 0 }, -1) * Matrix4::Translation({ -20, 50, -90 });
   for (int n = 0; n < Slices; ++n)
@@ -67,10 +67,10 @@ vtkSmartPointer<vtkImageData> MakeStack(const std::vector<int>& withoutImage = {
     poses.push_back(Matrix4::Translation({ 5, 6, 7 }) * turn *
       Matrix4::Translation({ -Spacing * spot[0], -Spacing * spot[1], 0 }) * probeToScan);
     status->InsertNextValue(std::count(withoutImage.begin(), withoutImage.end(), n) > 0
-        ? vtkLacunaTrackedSlices::ImageInvalid
+        ? lacuna::TrackedSlices::ImageInvalid
         : 0);
   }
-  vtkLacunaFieldData::SetMatrices(stack, "ProbeToTracker", poses);
+  lacuna::FieldData::SetMatrices(stack, "ProbeToTracker", poses);
   stack->GetFieldData()->AddArray(status);
   return stack;
 }

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// vtkLacunaGateSlices: flags, tables, phases, speed, errors, and what consumers make of it.
+#include "lacunaFieldData.h"
+#include "lacunaProvenance.h"
 #include "lacunaTestStacks.h"
 #include "vtkCellData.h"
 #include "vtkDoubleArray.h"
 #include "vtkFieldData.h"
 #include "vtkIntArray.h"
-#include "vtkLacunaFieldData.h"
 #include "vtkLacunaGateSlices.h"
-#include "vtkLacunaProvenance.h"
 #include "vtkLacunaSlicePlanes.h"
 #include "vtkPolyData.h"
 #include "vtkStringArray.h"
@@ -83,12 +83,11 @@ void TestValues()
   const auto table = MakeTable("Time", { 0, 0.2, 0.5 }, "Gate", { 0, 20, 50 });
   Gated gated = Gate(slices, table, [](auto* f) { f->SetGateRange(10, 30.000000001); });
   LACUNA_CHECK_THAT(gated.Status == "800088", gated.Status); // 0 10 20 30 40 50
-  vtkDataArray* gate = vtkLacunaFieldData::Get(gated.Slices, "Gate", 1, 6);
+  vtkDataArray* gate = lacuna::FieldData::Get(gated.Slices, "Gate", 1, 6);
   LACUNA_CHECK_NEAR(gate->GetTuple1(3), 30, 1e-9);
   LACUNA_CHECK_THAT(gated.Warnings.empty(), gated.Warnings);
-  LACUNA_CHECK_CONTAINS(vtkLacunaProvenance::Get(gated.Slices).back(), "vtkLacunaGateSlices");
-  LACUNA_CHECK_CONTAINS(
-    vtkLacunaProvenance::Get(gated.Slices).back(), "GateRange=10,30.000000001 ");
+  LACUNA_CHECK_CONTAINS(lacuna::Provenance::Get(gated.Slices).back(), "vtkLacunaGateSlices");
+  LACUNA_CHECK_CONTAINS(lacuna::Provenance::Get(gated.Slices).back(), "GateRange=10,30.000000001 ");
   // all else is as it was
   LACUNA_CHECK_THAT(
     gated.Slices->GetPointData()->GetScalars() == slices->GetPointData()->GetScalars(), "pixels");
@@ -102,7 +101,7 @@ void TestValues()
   LACUNA_CHECK_THAT(gated.Status == "9024d8", gated.Status);
 
   // without a table: an array of the slices themselves
-  vtkLacunaFieldData::Set(slices, "Breath", { 0, 1, 2, 3, 2, 1 }, 1);
+  lacuna::FieldData::Set(slices, "Breath", { 0, 1, 2, 3, 2, 1 }, 1);
   gated = Gate(slices, nullptr,
     [](auto* f)
     {
@@ -268,7 +267,7 @@ void TestSpeedOfPosesAlone()
   vtkNew<vtkImageData> stack;
   stack->SetDimensions(1, 1, 4);
   stack->AllocateScalars(VTK_UNSIGNED_CHAR, 1);
-  vtkLacunaTrackedSlices::Write(
+  lacuna::TrackedSlices::Write(
     stack, poses, { 0, 0.1, 0.15, 0.25 }, std::vector<unsigned char>(4, 2), { 0, 1, 2, 3 });
   const Gated gated = Gate(stack, nullptr, [](auto* f) { f->SetSpeedLimit(15); });
   LACUNA_CHECK_THAT(gated.Status == "2262", gated.Status + gated.Errors);
@@ -293,7 +292,7 @@ void TestTexts()
   Gated gated = Gate(slices, nullptr, [](auto*) {});
   LACUNA_CHECK_THAT(gated.Errors.empty(), gated.Errors);
   LACUNA_CHECK_THAT(gated.Status == "000880", gated.Status);
-  LACUNA_CHECK(vtkLacunaFieldData::Get(gated.Slices, "Gate", 1, 6)->GetTuple1(1) == 0.5);
+  LACUNA_CHECK(lacuna::FieldData::Get(gated.Slices, "Gate", 1, 6)->GetTuple1(1) == 0.5);
   setTexts({ "0", "", "nan", "one", "1", "0.5 0.5" });
   gated = Gate(slices, nullptr, [](auto*) {});
   LACUNA_CHECK_THAT(gated.Status == "088808", gated.Status);
@@ -347,7 +346,7 @@ void TestErrors()
 
   slices->GetFieldData()->RemoveArray("Timestamp");
   LACUNA_CHECK_CONTAINS(error(table, [](auto*) {}), "'Timestamp' is missing");
-  vtkLacunaFieldData::Set(slices, "Gate", { 1, 2, 3 }, 1);
+  lacuna::FieldData::Set(slices, "Gate", { 1, 2, 3 }, 1);
   LACUNA_CHECK_CONTAINS(error(nullptr, [](auto*) {}), "'Gate'");
   slices->GetFieldData()->RemoveArray("SliceStatus");
   LACUNA_CHECK_CONTAINS(error(table, [](auto*) {}), "'SliceStatus' is missing");

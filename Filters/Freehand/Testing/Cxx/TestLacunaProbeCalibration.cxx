@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// vtkLacunaProbeCalibration: what it makes of slices and picks, the file, and what cannot be.
+#include "lacunaProvenance.h"
 #include "lacunaTestCalibrations.h"
-#include "vtkLacunaProvenance.h"
 #include "vtkSMPTools.h"
 
 #include <cstdio>
@@ -23,11 +23,11 @@ void TestWires()
   LACUNA_CHECK(LargestDifference(found.GetImageToProbe(), ImageToProbe()) < 1e-6);
   vtkDataArray* poses = scan.Slices->GetFieldData()->GetArray("ProbeToTracker");
   vtkDataArray* reference =
-    vtkLacunaFieldData::Get(found.Slices, "ImageToReference", 16, poses->GetNumberOfTuples());
+    lacuna::FieldData::Get(found.Slices, "ImageToReference", 16, poses->GetNumberOfTuples());
   for (int i = 0; i < 18; ++i)
   {
-    LACUNA_CHECK(LargestDifference(vtkLacunaFieldData::GetMatrix(reference, i),
-                   vtkLacunaFieldData::GetMatrix(poses, i) * found.GetImageToProbe()) < 1e-12);
+    LACUNA_CHECK(LargestDifference(lacuna::FieldData::GetMatrix(reference, i),
+                   lacuna::FieldData::GetMatrix(poses, i) * found.GetImageToProbe()) < 1e-12);
   }
   // the input is not touched, its pixels are shared
   LACUNA_CHECK(!scan.Slices->GetFieldData()->HasArray("ImageToReference"));
@@ -52,9 +52,8 @@ void TestWires()
   LACUNA_CHECK(found.GetFigure("CalibrationRms") < 1e-7);
   LACUNA_CHECK(found.GetFigure("ExpectedError") < 1e-5);
   LACUNA_CHECK(found.Residuals->GetFieldData()->HasArray("Advice"));
-  LACUNA_CHECK_CONTAINS(
-    vtkLacunaProvenance::Get(found.Picture).back(), "vtkLacunaProbeCalibration");
-  LACUNA_CHECK_CONTAINS(vtkLacunaProvenance::Get(found.Slices).back(), "RowSpacing=0.6");
+  LACUNA_CHECK_CONTAINS(lacuna::Provenance::Get(found.Picture).back(), "vtkLacunaProbeCalibration");
+  LACUNA_CHECK_CONTAINS(lacuna::Provenance::Get(found.Slices).back(), "RowSpacing=0.6");
   // both spacings are found when asked for, the ones given are of no account
   const Calibrated scale = Calibrate(scan.Slices, scan.Picks,
     [](auto* f)
@@ -63,7 +62,7 @@ void TestWires()
       f->EstimateScaleOn();
     });
   LACUNA_CHECK(LargestDifference(scale.GetImageToProbe(), ImageToProbe()) < 1e-5);
-  vtkDataArray* spacing = vtkLacunaFieldData::Get(scale.Slices, "PixelSpacing", 2, 1);
+  vtkDataArray* spacing = lacuna::FieldData::Get(scale.Slices, "PixelSpacing", 2, 1);
   LACUNA_CHECK_NEAR(spacing->GetComponent(0, 0), ColumnSpacing, 1e-6);
   LACUNA_CHECK_NEAR(spacing->GetComponent(0, 1), RowSpacing, 1e-6);
 }
@@ -163,8 +162,8 @@ void TestFile()
   filter->Update();
   LACUNA_CHECK_CONTAINS(messages->Errors, "no-such-folder");
   LACUNA_CHECK(
-    LargestDifference(vtkLacunaFieldData::GetMatrix(
-                        vtkLacunaFieldData::Get(filter->GetOutput(), "ImageToProbe", 16, 1), 0),
+    LargestDifference(lacuna::FieldData::GetMatrix(
+                        lacuna::FieldData::Get(filter->GetOutput(), "ImageToProbe", 16, 1), 0),
       ImageToProbe()) < 1e-6);
 }
 

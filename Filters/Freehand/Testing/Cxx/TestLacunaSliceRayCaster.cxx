@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// Ports, arrays, extents, pieces, properties, errors of vtkLacunaSliceRayCaster.
+#include "lacunaDepthMap.h"
+#include "lacunaProvenance.h"
 #include "lacunaTestCasters.h"
 #include "vtkCharArray.h"
 #include "vtkDoubleArray.h"
 #include "vtkFieldData.h"
 #include "vtkFloatArray.h"
 #include "vtkInformation.h"
-#include "vtkLacunaDepthMap.h"
-#include "vtkLacunaProvenance.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 
 #include <cmath>
@@ -61,7 +61,7 @@ void TestContract()
   LACUNA_CHECK_NEAR(corner[0], 16, 1e-12);
   LACUNA_CHECK_NEAR(corner[1], 24, 1e-12);
   LACUNA_CHECK_NEAR(corner[2], 0, 1e-12);
-  const vtkLacunaDepthMap contract(map);
+  const lacuna::DepthMap contract(map);
   LACUNA_CHECK(!contract.IsPerspective());
   vtkPointData* points = map->GetPointData();
   LACUNA_CHECK(points->GetNumberOfArrays() == 3);
@@ -88,7 +88,7 @@ void TestContract()
   LACUNA_CHECK(fields->GetNumberOfArrays() == 6); // with Sweeps, SweepGap and RayGap
   LACUNA_CHECK(fields->GetArray("IsoValues")->GetTuple1(0) == 30);
   LACUNA_CHECK(fields->GetArray("ImageToWorld")->GetNumberOfComponents() == 16);
-  const std::vector<std::string> steps = vtkLacunaProvenance::Get(map);
+  const std::vector<std::string> steps = lacuna::Provenance::Get(map);
   LACUNA_CHECK(steps.size() == 1 && Contains(steps[0], "vtkLacunaSliceRayCaster") &&
     Contains(steps[0], "IsoValue=30 SolidSide=Above") && Contains(steps[0], "ViewUp=0,-1,0"));
   std::ostringstream text;

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// Ports, arrays, extents, pieces, time, errors of vtkLacunaSweptVolume.
 #include "lacunaCheck.h"
+#include "lacunaProvenance.h"
 #include "lacunaTestReplay.h"
 #include "lacunaTestStacks.h"
+#include "lacunaTrackedSlices.h"
 #include "vtkCallbackCommand.h"
 #include "vtkCharArray.h"
 #include "vtkDataArray.h"
@@ -10,9 +12,7 @@
 #include "vtkFieldData.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
-#include "vtkLacunaProvenance.h"
 #include "vtkLacunaSweptVolume.h"
-#include "vtkLacunaTrackedSlices.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
 #include "vtkSmartPointer.h"
@@ -68,7 +68,7 @@ void TestContract()
   LACUNA_CHECK_THAT(
     GetValue(volume, "Intensity", 6, 2, 5) == 39, "wide and high footprints of a ramp");
   LACUNA_CHECK_CONTAINS(
-    vtkLacunaProvenance::Get(volume)[0], "FootprintScale=2.00000001 FootprintAcrossSlices=on");
+    lacuna::Provenance::Get(volume)[0], "FootprintScale=2.00000001 FootprintAcrossSlices=on");
   filter->SetFootprintScale(1);
   filter->FootprintAcrossSlicesOff();
   filter->Update();
@@ -79,7 +79,7 @@ void TestContract()
     GetValue(volume, "vtkValidPointMask", 12, 4, 8) == 1, "the last voxel is filled");
   LACUNA_CHECK_THAT(volume->GetFieldData()->GetNumberOfArrays() == 3,
     "only Provenance, Sweeps and SweepGap in the field data");
-  const std::vector<std::string> steps = vtkLacunaProvenance::Get(volume);
+  const std::vector<std::string> steps = lacuna::Provenance::Get(volume);
   LACUNA_CHECK_THAT(steps.size() == 1 && Contains(steps[0], "vtkLacunaSweptVolume") &&
       Contains(steps[0], "OutputSpacing=0.5,1,0.5") &&
       Contains(steps[0], "PixelSampling=Footprint"),

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// vtkLacunaTemporalCalibration: a video that is late by a known time, and what cannot tell.
+#include "lacunaProvenance.h"
 #include "lacunaTestScans.h"
-#include "vtkLacunaProvenance.h"
 #include "vtkLacunaTemporalCalibration.h"
 #include "vtkSMPTools.h"
 
@@ -48,7 +48,7 @@ struct Found
   std::string Errors;
   double GetFigure(const char* name) const
   {
-    return vtkLacunaFieldData::Get(this->Table, name, 1, 1)->GetTuple1(0);
+    return lacuna::FieldData::Get(this->Table, name, 1, 1)->GetTuple1(0);
   }
 };
 
@@ -73,7 +73,7 @@ void TestLag(vtkImageData* slices)
   LACUNA_CHECK(found.GetFigure("LagSpread") < 0.002 && found.GetFigure("LagSpread") > 0);
   LACUNA_CHECK(found.GetFigure("Correlation") > 0.99);
   LACUNA_CHECK(found.GetFigure("Frames") > 0.7 * Frames);
-  LACUNA_CHECK_CONTAINS(vtkLacunaProvenance::Get(found.Table).back(), "MaximumLag=0.3");
+  LACUNA_CHECK_CONTAINS(lacuna::Provenance::Get(found.Table).back(), "MaximumLag=0.3");
   // the table's highest correlation is at the lag; its lags reach from end to end
   vtkIdType best = 0;
   const vtkIdType rows = found.Table->GetNumberOfRows();

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// vtkLacunaTrackerSelfTest: slices and tables in, deviations and advice out, and what cannot be.
+#include "lacunaFieldData.h"
+#include "lacunaProvenance.h"
 #include "lacunaTestStacks.h"
 #include "lacunaTestTables.h"
 #include "vtkDoubleArray.h"
 #include "vtkFieldData.h"
-#include "vtkLacunaFieldData.h"
-#include "vtkLacunaProvenance.h"
 #include "vtkLacunaTrackerSelfTest.h"
 #include "vtkPolyData.h"
 #include "vtkStringArray.h"
@@ -81,8 +81,8 @@ vtkSmartPointer<vtkImageData> MakeSlices(int count)
   auto slices = lacunaTestStacks::MakeStack(first);
   slices->GetFieldData()->RemoveArray("ImageToReference");
   slices->GetFieldData()->RemoveArray("Timestamp");
-  vtkLacunaFieldData::SetMatrices(slices, "ProbeToTracker", first);
-  vtkLacunaFieldData::SetMatrices(slices, "StylusToTracker", second);
+  lacuna::FieldData::SetMatrices(slices, "ProbeToTracker", first);
+  lacuna::FieldData::SetMatrices(slices, "StylusToTracker", second);
   return slices;
 }
 
@@ -122,7 +122,7 @@ struct Tested
   std::string Errors, Warnings;
   double GetFigure(const char* name) const
   {
-    return vtkLacunaFieldData::Get(this->Points, name, 1, 1)->GetTuple1(0);
+    return lacuna::FieldData::Get(this->Points, name, 1, 1)->GetTuple1(0);
   }
 };
 
@@ -155,8 +155,8 @@ void CheckTruth(const Tested& tested, int count)
   LACUNA_CHECK(tested.Points->GetNumberOfPoints() == count);
   LACUNA_CHECK(tested.Points->GetNumberOfVerts() == count);
   LACUNA_CHECK_NEAR(tested.GetFigure("Separation"), lacuna::Norm(SecondToFirst.Column(3)), 1e-4);
-  const Matrix4 found = vtkLacunaFieldData::GetMatrix(
-    vtkLacunaFieldData::Get(tested.Points, "SecondToFirst", 16, 1), 0);
+  const Matrix4 found =
+    lacuna::FieldData::GetMatrix(lacuna::FieldData::Get(tested.Points, "SecondToFirst", 16, 1), 0);
   for (int i = 0; i < 16; ++i)
   {
     LACUNA_CHECK_NEAR(found.Data()[i], SecondToFirst.Data()[i], 1e-4);
@@ -193,7 +193,7 @@ void TestSlices()
   CheckTruth(tested, 60);
   LACUNA_CHECK_THAT(
     tested.Points->GetPointData()->GetArray("Record")->GetTuple1(9) == 9, "slice numbers");
-  LACUNA_CHECK_CONTAINS(vtkLacunaProvenance::Get(tested.Points).back(), "SpeedLimit=50");
+  LACUNA_CHECK_CONTAINS(lacuna::Provenance::Get(tested.Points).back(), "SpeedLimit=50");
   LACUNA_CHECK_CONTAINS(tested.Warnings, "no place was visited twice");
   LACUNA_CHECK(std::isnan(tested.GetFigure("Repeatability")));
   LACUNA_CHECK_NEAR(tested.GetFigure("PositionMaximum"), 7, 1e-3);
@@ -225,7 +225,7 @@ void TestSlices()
   // slices without a pose, by flag or by number, are left out; other transforms are no receivers
   slices->GetFieldData()->GetArray("SliceStatus")->SetTuple1(3, 1);
   slices->GetFieldData()->GetArray("StylusToTracker")->SetComponent(5, 3, NoNumber);
-  vtkLacunaFieldData::SetMatrices(slices, "TrackerToReference", FirstPoses(60));
+  lacuna::FieldData::SetMatrices(slices, "TrackerToReference", FirstPoses(60));
   LACUNA_CHECK(Run(slices).Points->GetNumberOfPoints() == 58);
   // exchanged, the other way round
   const Tested other = Run(slices,
@@ -236,7 +236,7 @@ void TestSlices()
     });
   const Matrix4 back = SecondToFirst.Inverse();
   const Matrix4 found =
-    vtkLacunaFieldData::GetMatrix(vtkLacunaFieldData::Get(other.Points, "SecondToFirst", 16, 1), 0);
+    lacuna::FieldData::GetMatrix(lacuna::FieldData::Get(other.Points, "SecondToFirst", 16, 1), 0);
   LACUNA_CHECK_NEAR(found(0, 3), back(0, 3), 1e-4);
 }
 

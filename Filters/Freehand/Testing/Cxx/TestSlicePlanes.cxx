@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// Geometry, arrays, choices, pieces, threads, errors of vtkLacunaSlicePlanes.
 #include "lacunaCheck.h"
+#include "lacunaFieldData.h"
+#include "lacunaProvenance.h"
+#include "lacunaTrackedSlices.h"
 #include "vtkCell.h"
 #include "vtkCellData.h"
 #include "vtkDataArray.h"
 #include "vtkFieldData.h"
 #include "vtkImageData.h"
-#include "vtkLacunaFieldData.h"
-#include "vtkLacunaProvenance.h"
 #include "vtkLacunaSlicePlanes.h"
-#include "vtkLacunaTrackedSlices.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
 #include "vtkPolyData.h"
@@ -60,9 +60,9 @@ vtkSmartPointer<vtkImageData> MakeStack(int count, const std::vector<unsigned ch
     times.push_back(0.1 * k);
     frames.push_back(k);
   }
-  vtkLacunaTrackedSlices::Write(
+  lacuna::TrackedSlices::Write(
     stack, poses, times, status.empty() ? std::vector<unsigned char>(count, 0) : status, frames);
-  vtkLacunaFieldData::SetMatrices(stack, "ImageToProbe",
+  lacuna::FieldData::SetMatrices(stack, "ImageToProbe",
     { Matrix4::Translation({ 0, 300, 0 }) * Matrix4::Scaling({ 0.5, 0.4, 1 }) });
   return stack;
 }
@@ -175,9 +175,9 @@ void TestPlanes()
     GetCellValue(Run(MakeStack(3), [](auto* f) { f->SetSpeedLimit(10); }), "TooFast", 0) == 1);
   LACUNA_CHECK(
     GetCellValue(Run(MakeStack(3), [](auto* f) { f->SetSpeedLimit(0); }), "TooFast", 0) == 0);
-  LACUNA_CHECK(vtkLacunaProvenance::Get(planes).size() == 1);
+  LACUNA_CHECK(lacuna::Provenance::Get(planes).size() == 1);
   LACUNA_CHECK_CONTAINS(
-    vtkLacunaProvenance::Get(Run(MakeStack(3), [](auto* f) { f->SetSpeedLimit(23.00000001); }))[0],
+    lacuna::Provenance::Get(Run(MakeStack(3), [](auto* f) { f->SetSpeedLimit(23.00000001); }))[0],
     " SpeedLimit=23.00000001 OutlineOnly=off ");
   LACUNA_CHECK(planes->GetFieldData()->GetArray("PixelStep")->GetTuple1(0) == 1);
   LACUNA_CHECK_THAT(!planes->GetFieldData()->GetArray("ImageToReference"),

@@ -170,7 +170,7 @@ void TestReplay()
   replay->Show = [](int shown)
   {
     std::vector<unsigned char> status(6, 0);
-    std::fill(status.begin() + shown, status.end(), vtkLacunaTrackedSlices::ImageInvalid);
+    std::fill(status.begin() + shown, status.end(), lacuna::TrackedSlices::ImageInvalid);
     return MakeStack(MakePoses(6), VTK_UNSIGNED_CHAR, status);
   };
   vtkNew<Caster> caster;
@@ -201,12 +201,12 @@ void TestLiveBeginning()
   FixView(caster);
   const auto messages = lacunaCheck::Watch(caster);
   const auto flagged = MakeStack(MakePoses(2), VTK_SHORT, { 1, 1 });
-  vtkLacunaTrackedSlices::MarkAsGrowing(flagged);
+  lacuna::TrackedSlices::MarkAsGrowing(flagged);
   caster->SetInputData(flagged);
   caster->Update();
   LACUNA_CHECK_THAT(messages->Errors.empty(), messages->Errors);
   LACUNA_CHECK(caster->GetOutput()->GetNumberOfPoints() == 0);
-  flagged->GetFieldData()->RemoveArray(vtkLacunaTrackedSlices::GrowingName);
+  flagged->GetFieldData()->RemoveArray(lacuna::TrackedSlices::GrowingName);
   caster->Modified();
   caster->Update();
   LACUNA_CHECK_CONTAINS(messages->Errors, "no slice is left to look at");

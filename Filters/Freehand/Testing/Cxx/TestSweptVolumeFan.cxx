@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// The fan of vtkLacunaSweptVolume: given, found, copied from what was found, refused.
+#include "lacunaFieldData.h"
+#include "lacunaProvenance.h"
 #include "lacunaTestReplay.h"
 #include "vtkIntArray.h"
-#include "vtkLacunaFieldData.h"
-#include "vtkLacunaProvenance.h"
 
 #include <cmath>
 #include <random>
@@ -59,7 +59,7 @@ vtkSmartPointer<vtkImageData> Scan(bool (*inside)(double, double))
       }
     }
   }
-  vtkLacunaTrackedSlices::Write(stack, poses, times, std::vector<unsigned char>(Slices, 0), frames);
+  lacuna::TrackedSlices::Write(stack, poses, times, std::vector<unsigned char>(Slices, 0), frames);
   return stack;
 }
 
@@ -142,7 +142,7 @@ void TestGiven()
     LACUNA_CHECK_THAT(!fan->GetFieldData()->HasArray("FanOrigin"), "a given fan is no result");
   }
   const auto fan = Reconstruct(stack, SetGivenFan);
-  LACUNA_CHECK_CONTAINS(vtkLacunaProvenance::Get(fan).back(), "FanMask=Given FanOrigin=80,-30 ");
+  LACUNA_CHECK_CONTAINS(lacuna::Provenance::Get(fan).back(), "FanMask=Given FanOrigin=80,-30 ");
 
   // pixels are counted in the original slices, however the stack is cropped or strided
   vtkNew<vtkImageData> cropped;
@@ -183,10 +183,10 @@ void TestAutomatic()
   filter->Update();
   vtkImageData* found = filter->GetOutput();
   LACUNA_CHECK_THAT(GetRange(found)[1] <= 100, "no letters");
-  vtkDataArray* origin = vtkLacunaFieldData::Get(found, "FanOrigin", 2, 1);
-  vtkDataArray* angles = vtkLacunaFieldData::Get(found, "FanAngles", 2, 1);
-  vtkDataArray* radii = vtkLacunaFieldData::Get(found, "FanRadii", 2, 1);
-  vtkDataArray* clip = vtkLacunaFieldData::Get(found, "ClipRectangle", 4, 1);
+  vtkDataArray* origin = lacuna::FieldData::Get(found, "FanOrigin", 2, 1);
+  vtkDataArray* angles = lacuna::FieldData::Get(found, "FanAngles", 2, 1);
+  vtkDataArray* radii = lacuna::FieldData::Get(found, "FanRadii", 2, 1);
+  vtkDataArray* clip = lacuna::FieldData::Get(found, "ClipRectangle", 4, 1);
   LACUNA_CHECK_NEAR(angles->GetComponent(0, 0), -30, 0.7);
   LACUNA_CHECK_NEAR(angles->GetComponent(0, 1), 36, 0.7);
   LACUNA_CHECK_NEAR(
@@ -228,7 +228,7 @@ void TestAutomatic()
   // and each input for itself
   filter->AddInputData(stack);
   filter->Update();
-  radii = vtkLacunaFieldData::Get(filter->GetOutput(), "FanRadii", 2, 2);
+  radii = lacuna::FieldData::Get(filter->GetOutput(), "FanRadii", 2, 2);
   LACUNA_CHECK_THAT(radii->GetComponent(0, 1) == 0 && radii->GetComponent(1, 1) > 50, "two inputs");
 }
 
@@ -280,7 +280,7 @@ void TestReplay()
       vtkDataArray* status = stack->GetFieldData()->GetArray("SliceStatus");
       for (int k = shown; k < Slices; ++k)
       {
-        status->SetTuple1(k, vtkLacunaTrackedSlices::ImageInvalid);
+        status->SetTuple1(k, lacuna::TrackedSlices::ImageInvalid);
       }
       return stack;
     };

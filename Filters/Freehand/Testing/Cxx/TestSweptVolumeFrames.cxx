@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// vtkLacunaSweptVolume in the reference frame and along the sweep: the same object at the same
 /// place, not mirrored.
+#include "lacunaProvenance.h"
 #include "lacunaTestStacks.h"
 #include "vtkFloatArray.h"
 #include "vtkImageAlgorithm.h"
 #include "vtkInformation.h"
-#include "vtkLacunaProvenance.h"
 #include "vtkMatrix3x3.h"
 
 #include <cmath>
@@ -45,8 +45,7 @@ vtkSmartPointer<vtkImageData> Scan(double (*field)(const Vec3&), double fan = 0)
       }
     }
   }
-  vtkLacunaTrackedSlices::Write(
-    stack, poses, times, std::vector<unsigned char>(size[2], 0), frames);
+  lacuna::TrackedSlices::Write(stack, poses, times, std::vector<unsigned char>(size[2], 0), frames);
   return stack;
 }
 
@@ -159,7 +158,7 @@ void TestDirection()
   LACUNA_CHECK_THAT(size[0] == 60 && size[1] == 50 && size[2] == 50, "one voxel per pixel");
   LACUNA_CHECK_THAT(
     Norm(GetPoint(volume, 0, 0, 0) - Probe.Point({ 0, 0, 0 })) < 1e-9, "begins at the first pixel");
-  LACUNA_CHECK_CONTAINS(vtkLacunaProvenance::Get(volume).back(), "OutputFrame=Principal");
+  LACUNA_CHECK_CONTAINS(lacuna::Provenance::Get(volume).back(), "OutputFrame=Principal");
 }
 
 void TestVolumes()

@@ -36,7 +36,7 @@ vtkSmartPointer<vtkImageData> MakeSweep(int count, int blank = Slices, int first
     poses.push_back(GetPose(k));
     times.push_back(0.5 * k);
     frames.push_back(k);
-    status.push_back(k < blank ? 0 : vtkLacunaTrackedSlices::ImageInvalid);
+    status.push_back(k < blank ? 0 : lacuna::TrackedSlices::ImageInvalid);
     for (int i = 0; i < 40 * 30; ++i)
     {
       const auto grey = static_cast<unsigned char>(random() % 256);
@@ -47,7 +47,7 @@ vtkSmartPointer<vtkImageData> MakeSweep(int count, int blank = Slices, int first
   {
     *static_cast<unsigned char*>(stack->GetScalarPointer()) = static_cast<unsigned char>(firstGrey);
   }
-  vtkLacunaTrackedSlices::Write(stack, poses, times, status, frames);
+  lacuna::TrackedSlices::Write(stack, poses, times, status, frames);
   return stack;
 }
 
@@ -143,8 +143,8 @@ void TestReplayOfInvalidImages()
   {
     const auto stack = MakeSweep(Slices, shown);
     vtkDataArray* status = stack->GetFieldData()->GetArray("SliceStatus");
-    status->SetTuple1(3, vtkLacunaTrackedSlices::ImageInvalid);
-    status->SetTuple1(9, vtkLacunaTrackedSlices::ImageInvalid);
+    status->SetTuple1(3, lacuna::TrackedSlices::ImageInvalid);
+    status->SetTuple1(9, lacuna::TrackedSlices::ImageInvalid);
     return stack;
   };
   vtkNew<vtkLacunaSweptVolume> filter;
@@ -186,7 +186,7 @@ void TestReplayOfRest()
   replay->Show = [&](int shown)
   {
     std::vector<unsigned char> status(Slices, 0);
-    std::fill(status.begin() + shown, status.end(), vtkLacunaTrackedSlices::ImageInvalid);
+    std::fill(status.begin() + shown, status.end(), lacuna::TrackedSlices::ImageInvalid);
     return MakeStack(poses, VTK_UNSIGNED_CHAR, status);
   };
   vtkNew<vtkLacunaSweptVolume> filter;
@@ -320,7 +320,7 @@ void TestLiveBeginning()
   {
     if (grows)
     {
-      vtkLacunaTrackedSlices::MarkAsGrowing(sweep);
+      lacuna::TrackedSlices::MarkAsGrowing(sweep);
     }
     filter->SetInputData(sweep);
     filter->Update();

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// Which slices vtkLacunaSweptVolume takes: status, flags taken by choice, bad poses.
+#include "lacunaProvenance.h"
 #include "lacunaTestStacks.h"
 #include "vtkFieldData.h"
 #include "vtkIntArray.h"
-#include "vtkLacunaProvenance.h"
 
 #include <limits>
 
@@ -90,7 +90,7 @@ void TestFlagsTakenByChoice()
   filter->UseTooFastOn();
   filter->UseGatedOutOn();
   LACUNA_CHECK_THAT(GetGrey(filter, 2) == 34, "a flag of the future");
-  LACUNA_CHECK_CONTAINS(vtkLacunaProvenance::Get(filter->GetOutput()).back(),
+  LACUNA_CHECK_CONTAINS(lacuna::Provenance::Get(filter->GetOutput()).back(),
     "UseImageInvalid=on UseTooFast=on UseGatedOut=on BadPoses=Refuse");
 }
 

@@ -104,7 +104,7 @@ protected:
     output->AllocateScalars(this->Stack->GetScalarType(), 1);
     output->GetFieldData()->ShallowCopy(this->Stack->GetFieldData());
     vtkNew<vtkStringArray> preview;
-    preview->SetName(vtkLacunaTrackedSlices::PreviewName);
+    preview->SetName(lacuna::TrackedSlices::PreviewName);
     preview->InsertNextValue("a preview of every 5th slice");
     output->GetFieldData()->AddArray(preview);
     for (int k = extent[4]; k <= extent[5]; ++k)
@@ -152,7 +152,7 @@ vtkSmartPointer<vtkImageData> MakeLargeStack(int count, int columns, int rows)
     times.push_back(0.1 * k);
     frames.push_back(k);
   }
-  vtkLacunaTrackedSlices::Write(stack, poses, times, status, frames);
+  lacuna::TrackedSlices::Write(stack, poses, times, status, frames);
   return stack;
 }
 

@@ -91,7 +91,7 @@ void TestGatedOut()
   {
     std::vector<unsigned char> status(31, 0);
     std::fill(status.begin() + 6, status.begin() + 25,
-      isGated ? vtkLacunaTrackedSlices::GatedOut : vtkLacunaTrackedSlices::TooFast);
+      isGated ? lacuna::TrackedSlices::GatedOut : lacuna::TrackedSlices::TooFast);
     vtkNew<vtkLacunaSweptVolume> filter;
     SetUp(filter);
     filter->SetInputData(MakeStack(MakePoses(31), VTK_SHORT, status));

@@ -109,12 +109,12 @@ struct Calibrated
 
   double GetFigure(const char* name) const
   {
-    return vtkLacunaFieldData::Get(this->Slices, name, 1, 1)->GetTuple1(0);
+    return lacuna::FieldData::Get(this->Slices, name, 1, 1)->GetTuple1(0);
   }
   Matrix4 GetImageToProbe() const
   {
-    return vtkLacunaFieldData::GetMatrix(
-      vtkLacunaFieldData::Get(this->Slices, "ImageToProbe", 16, 1), 0);
+    return lacuna::FieldData::GetMatrix(
+      lacuna::FieldData::Get(this->Slices, "ImageToProbe", 16, 1), 0);
   }
 };
 

@@ -5,12 +5,12 @@
 #define lacunaTestPoses_h
 
 #include "lacunaCheck.h"
+#include "lacunaFieldData.h"
 #include "lacunaTestTables.h"
 #include "vtkDataArray.h"
 #include "vtkFieldData.h"
 #include "vtkImageData.h"
 #include "vtkLacunaAssembleTrackedSlices.h"
-#include "vtkLacunaFieldData.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
 #include "vtkSmartPointer.h"
@@ -106,7 +106,7 @@ inline double GetGrey(vtkImageData* image, int i, int j, int k)
 inline void CheckPose(vtkImageData* slices, vtkIdType slice, const lacuna::Matrix4& expected)
 {
   const lacuna::Matrix4 pose =
-    vtkLacunaFieldData::GetMatrix(slices->GetFieldData()->GetArray("ImageToReference"), slice);
+    lacuna::FieldData::GetMatrix(slices->GetFieldData()->GetArray("ImageToReference"), slice);
   for (int i = 0; i < 16; ++i)
   {
     LACUNA_CHECK_NEAR(pose.Data()[i], expected.Data()[i], 1e-9);

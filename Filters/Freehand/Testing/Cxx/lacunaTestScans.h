@@ -6,12 +6,12 @@
 #define lacunaTestScans_h
 
 #include "lacunaCheck.h"
+#include "lacunaFieldData.h"
 #include "lacunaMatrix4.h"
 #include "lacunaTestTables.h"
+#include "lacunaTrackedSlices.h"
 #include "vtkFieldData.h"
 #include "vtkImageData.h"
-#include "vtkLacunaFieldData.h"
-#include "vtkLacunaTrackedSlices.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
 #include "vtkSmartPointer.h"
@@ -77,9 +77,9 @@ inline vtkSmartPointer<vtkImageData> MakeScan(
   {
     frames.push_back(i);
   }
-  vtkLacunaTrackedSlices::Write(
+  lacuna::TrackedSlices::Write(
     stack, {}, times, std::vector<unsigned char>(poses.size(), 0), frames);
-  vtkLacunaFieldData::SetMatrices(stack, "ProbeToTracker", poses);
+  lacuna::FieldData::SetMatrices(stack, "ProbeToTracker", poses);
   return stack;
 }
 

@@ -5,10 +5,10 @@
 #define lacunaTestStacks_h
 
 #include "lacunaCheck.h"
+#include "lacunaTrackedSlices.h"
 #include "vtkDataArray.h"
 #include "vtkImageData.h"
 #include "vtkLacunaSweptVolume.h"
-#include "vtkLacunaTrackedSlices.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
 #include "vtkSmartPointer.h"
@@ -61,7 +61,7 @@ inline vtkSmartPointer<vtkImageData> MakeStack(const std::vector<lacuna::Matrix4
     times.push_back(0.1 * k);
     frames.push_back(k);
   }
-  vtkLacunaTrackedSlices::Write(stack, poses, times,
+  lacuna::TrackedSlices::Write(stack, poses, times,
     status.empty() ? std::vector<unsigned char>(poses.size(), 0) : status, frames);
   return stack;
 }

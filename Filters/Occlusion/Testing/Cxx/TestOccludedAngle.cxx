@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lacunaCheck.h"
+#include "lacunaProvenance.h"
 #include "vtkCommand.h"
 #include "vtkDataArray.h"
 #include "vtkFieldData.h"
@@ -8,7 +9,6 @@
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
 #include "vtkLacunaOccludedAngle.h"
-#include "vtkLacunaProvenance.h"
 #include "vtkNew.h"
 #include "vtkPiecewiseFunction.h"
 #include "vtkPointData.h"
@@ -81,7 +81,7 @@ void TestFlat()
     LACUNA_CHECK(Field(output, "ObjectVoxels", 1) == Field(output, "ObjectVolume", 1));
     LACUNA_CHECK(Field(output, "SuggestedThresholdOverPi", 0) > 1);
     LACUNA_CHECK(Field(output, "SuggestedThresholdOverPi", 0) < 2);
-    LACUNA_CHECK(vtkLacunaProvenance::Get(output).size() == 1);
+    LACUNA_CHECK(lacuna::Provenance::Get(output).size() == 1);
   }
 }
 
@@ -202,7 +202,7 @@ void TestAttenuations()
     LACUNA_CHECK_NEAR(
       array->GetOutput()->GetPointData()->GetScalars()->GetComponent(i, 0), truth, 1e-5);
   }
-  LACUNA_CHECK(vtkLacunaProvenance::Get(function->GetOutput())
+  LACUNA_CHECK(lacuna::Provenance::Get(function->GetOutput())
                  .back()
                  .find("OpacityFunction=10,0,0.5,0,200,1,0.5,0") != std::string::npos);
   // a changed function is a changed filter
@@ -251,9 +251,9 @@ void TestSpace()
   {
     LACUNA_CHECK(first->GetComponent(i, 0) == second->GetComponent(i, 0));
   }
-  LACUNA_CHECK(vtkLacunaProvenance::Get(b->GetOutput()).size() == 1);
+  LACUNA_CHECK(lacuna::Provenance::Get(b->GetOutput()).size() == 1);
   LACUNA_CHECK(
-    vtkLacunaProvenance::Get(a->GetOutput())
+    lacuna::Provenance::Get(a->GetOutput())
       .back()
       .find("ReconstructionSpace=\"vtkSphere Center=5,5,12 Radius=25.3\"") != std::string::npos);
 }

@@ -2,6 +2,7 @@
 // Outlines and pictures of slices in space: tracked slices that are tilted, a turned volume, and bad input.
 #include "lacunaCheck.h"
 #include "lacunaMatrix4.h"
+#include "lacunaTrackedSlices.h"
 #include "lacunaVector.h"
 #include "vtkCellData.h"
 #include "vtkDataArray.h"
@@ -9,7 +10,6 @@
 #include "vtkIdList.h"
 #include "vtkImageData.h"
 #include "vtkLacunaSliceOutliner.h"
-#include "vtkLacunaTrackedSlices.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
 #include "vtkPolyData.h"
@@ -60,7 +60,7 @@ vtkSmartPointer<vtkImageData> MakeStack(int count, const std::vector<unsigned ch
   }
   std::vector<double> times(count, 0);
   std::vector<int> frames(count, 0);
-  vtkLacunaTrackedSlices::Write(stack, MakePoses(count), times,
+  lacuna::TrackedSlices::Write(stack, MakePoses(count), times,
     status.empty() ? std::vector<unsigned char>(count, 0) : status, frames);
   return stack;
 }
@@ -278,7 +278,7 @@ void TestErrors()
   LACUNA_CHECK_CONTAINS(GetError(uncalibrated, [](vtkLacunaSliceOutliner*) {}), "not calibrated");
 
   // a slice without a pose
-  const auto gap = MakeStack(5, { 0, 0, vtkLacunaTrackedSlices::PoseInvalid, 0, 0 });
+  const auto gap = MakeStack(5, { 0, 0, lacuna::TrackedSlices::PoseInvalid, 0, 0 });
   vtkNew<vtkLacunaSliceOutliner> filter;
   filter->SetInputData(gap);
   AddL(filter, 1, 0, 2);

@@ -4,12 +4,12 @@
 #ifndef RBFTestMaps_h
 #define RBFTestMaps_h
 
+#include "lacunaDepthMap.h"
 #include "vtkCharArray.h"
 #include "vtkCylinder.h"
 #include "vtkDoubleArray.h"
 #include "vtkFloatArray.h"
 #include "vtkImageData.h"
-#include "vtkLacunaDepthMap.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
 #include "vtkSmartPointer.h"
@@ -40,14 +40,14 @@ struct TestMap
     this->Down = lacuna::Cross(this->View, this->Right);
     this->Image->SetExtent(
       FirstColumn, FirstColumn + Width - 1, FirstRow, FirstRow + Height - 1, 0, 0);
-    vtkLacunaDepthMap::SetGeometry(
+    lacuna::DepthMap::SetGeometry(
       this->Image, { this->Origin, this->Right, this->Down, this->View, { 1, 0.8 } });
     vtkNew<vtkDoubleArray> depth;
-    depth->SetName(vtkLacunaDepthMap::DepthName);
+    depth->SetName(lacuna::DepthMap::DepthName);
     vtkNew<vtkCharArray> valid;
-    valid->SetName(vtkLacunaDepthMap::MaskName);
+    valid->SetName(lacuna::DepthMap::MaskName);
     vtkNew<vtkFloatArray> normals;
-    normals->SetName(vtkLacunaDepthMap::NormalsName);
+    normals->SetName(lacuna::DepthMap::NormalsName);
     normals->SetNumberOfComponents(3);
     for (int i = 0; i < Width * Height; ++i)
     {
@@ -59,7 +59,7 @@ struct TestMap
     this->Image->GetPointData()->AddArray(depth);
     this->Image->GetPointData()->AddArray(valid);
     this->Image->GetPointData()->AddArray(normals);
-    this->Image->GetPointData()->SetActiveScalars(vtkLacunaDepthMap::DepthName);
+    this->Image->GetPointData()->SetActiveScalars(lacuna::DepthMap::DepthName);
   }
 
   /// Map axes, mm.
@@ -91,9 +91,9 @@ struct TestMap
   void Invalidate(vtkIdType i)
   {
     this->Image->GetPointData()
-      ->GetArray(vtkLacunaDepthMap::DepthName)
+      ->GetArray(lacuna::DepthMap::DepthName)
       ->SetTuple1(i, std::numeric_limits<double>::quiet_NaN());
-    this->Image->GetPointData()->GetArray(vtkLacunaDepthMap::MaskName)->SetTuple1(i, 0);
+    this->Image->GetPointData()->GetArray(lacuna::DepthMap::MaskName)->SetTuple1(i, 0);
   }
 };
 

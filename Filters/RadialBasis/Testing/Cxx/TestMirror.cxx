@@ -2,6 +2,9 @@
 // Mirror as a pipeline sees it: arrays, marks, pieces, errors.
 #include "RBFTestMaps.h"
 #include "lacunaCheck.h"
+#include "lacunaFieldData.h"
+#include "lacunaMirrored.h"
+#include "lacunaProvenance.h"
 #include "vtkCallbackCommand.h"
 #include "vtkFieldData.h"
 #include "vtkFloatArray.h"
@@ -9,10 +12,7 @@
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
-#include "vtkLacunaFieldData.h"
 #include "vtkLacunaMirror.h"
-#include "vtkLacunaMirrored.h"
-#include "vtkLacunaProvenance.h"
 #include "vtkMath.h"
 #include "vtkMatrix3x3.h"
 #include "vtkNew.h"
@@ -97,15 +97,15 @@ void TestVolume()
   LACUNA_CHECK(mirrored && std::string(mirrored->GetName()) == "MirroredCT");
   LACUNA_CHECK(mirrored && mirrored->GetDataType() == VTK_SHORT);
   LACUNA_CHECK(points->GetArray("vtkValidPointMask") && points->GetArray("Asymmetry"));
-  LACUNA_CHECK(vtkLacunaMirrored::IsMarked(output));
-  LACUNA_CHECK(!vtkLacunaMirrored::IsMarked(scene.Image));
-  LACUNA_CHECK(vtkLacunaProvenance::Get(output).size() == 1);
+  LACUNA_CHECK(lacuna::Mirrored::IsMarked(output));
+  LACUNA_CHECK(!lacuna::Mirrored::IsMarked(scene.Image));
+  LACUNA_CHECK(lacuna::Provenance::Get(output).size() == 1);
   lacuna::Vec3 normal{ 0, 0, 0 };
   lacuna::Vec3 origin{ 0, 0, 0 };
   for (int a = 0; a < 3; ++a)
   {
-    normal[a] = Field(output, vtkLacunaMirrored::NormalName, a);
-    origin[a] = Field(output, vtkLacunaMirrored::OriginName, a);
+    normal[a] = Field(output, lacuna::Mirrored::NormalName, a);
+    origin[a] = Field(output, lacuna::Mirrored::OriginName, a);
   }
   LACUNA_CHECK_NEAR(Norm(Cross(normal, scene.Normal)) * 180 / vtkMath::Pi(), 0, 0.05);
   LACUNA_CHECK(Dot(normal, scene.Normal) > 0); // the largest component is positive
@@ -130,7 +130,7 @@ void TestVolume()
   const lacuna::Vec3 longer = -3 * scene.Normal;
   mirror->SetNormal(longer[0], longer[1], longer[2]);
   mirror->Update();
-  LACUNA_CHECK_NEAR(Field(output, vtkLacunaMirrored::NormalName, 1), scene.Normal[1], 1e-15);
+  LACUNA_CHECK_NEAR(Field(output, lacuna::Mirrored::NormalName, 1), scene.Normal[1], 1e-15);
   LACUNA_CHECK(!output->GetFieldData()->GetArray("SymmetryAmbiguity"));
   vtkNew<vtkImageData> whole;
   whole->DeepCopy(output);
@@ -159,11 +159,11 @@ void TestDepthMap()
   LACUNA_CHECK_THAT(messages->Errors.empty(), messages->Errors);
   LACUNA_CHECK(messages->HasWarning("the symmetry is poor"));
   vtkImageData* output = mirror->GetOutput();
-  const vtkLacunaDepthMap contract(output); // throws unless it is a depth map
+  const lacuna::DepthMap contract(output); // throws unless it is a depth map
   vtkDataArray* depth = contract.GetDepth();
   vtkDataArray* asymmetry = output->GetPointData()->GetArray("Asymmetry");
   LACUNA_CHECK(output->GetPointData()->GetArray("Normals"));
-  LACUNA_CHECK(vtkLacunaMirrored::IsMarked(output));
+  LACUNA_CHECK(lacuna::Mirrored::IsMarked(output));
   int seen = 0;
   for (vtkIdType i = 0; i < depth->GetNumberOfTuples(); ++i)
   {
@@ -186,7 +186,7 @@ void TestDepthMap()
   vtkNew<vtkImageData> whole;
   whole->ShallowCopy(map.Image);
   vtkNew<vtkShortArray> millimetres;
-  vtkDataArray* given = map.Image->GetPointData()->GetArray(vtkLacunaDepthMap::DepthName);
+  vtkDataArray* given = map.Image->GetPointData()->GetArray(lacuna::DepthMap::DepthName);
   millimetres->SetName(given->GetName());
   for (vtkIdType i = 0; i < given->GetNumberOfTuples(); ++i)
   {
@@ -267,9 +267,9 @@ void TestAnnounced()
   vtkNew<vtkImageData> depths;
   depths->DeepCopy(map.Image);
   vtkNew<vtkFloatArray> single;
-  single->DeepCopy(map.Image->GetPointData()->GetArray(vtkLacunaDepthMap::DepthName));
+  single->DeepCopy(map.Image->GetPointData()->GetArray(lacuna::DepthMap::DepthName));
   depths->GetPointData()->SetScalars(single);
-  announce(depths, vtkLacunaDepthMap::DepthName, VTK_DOUBLE);
+  announce(depths, lacuna::DepthMap::DepthName, VTK_DOUBLE);
   announce(Scene().Image, "CT", VTK_SHORT);
 }
 
@@ -324,8 +324,8 @@ void TestErrors()
   LACUNA_CHECK(other->GetOutput()->GetNumberOfPoints() == 0);
 
   TestMap map;
-  vtkLacunaFieldData::Set(map.Image, vtkLacunaDepthMap::EyePositionName, { 0, 0, 0 }, 3);
-  vtkLacunaFieldData::Set(map.Image, vtkLacunaDepthMap::ViewAngleName, { 30 }, 1);
+  lacuna::FieldData::Set(map.Image, lacuna::DepthMap::EyePositionName, { 0, 0, 0 }, 3);
+  lacuna::FieldData::Set(map.Image, lacuna::DepthMap::ViewAngleName, { 30 }, 1);
   other->SetInputData(map.Image);
   fails(other, "perspective");
 }

@@ -2,10 +2,10 @@
 // Defects marked in each way, arrays, field data, normals, pieces, threads.
 #include "RBFTestMaps.h"
 #include "lacunaCheck.h"
+#include "lacunaProvenance.h"
 #include "vtkCylinder.h"
 #include "vtkDoubleArray.h"
 #include "vtkFieldData.h"
-#include "vtkLacunaProvenance.h"
 #include "vtkLacunaRBFHoleFiller.h"
 #include "vtkPlane.h"
 #include "vtkSMPTools.h"
@@ -137,7 +137,7 @@ void TestAutomaticHole()
   const auto count = static_cast<double>(std::count(filled.begin(), filled.end(), true));
   LACUNA_CHECK(std::abs(GetField(output, "DefectArea") - 0.8 * count * length) < 1e-6);
   LACUNA_CHECK(output->GetFieldData()->GetArray("ImageToWorld"));
-  const std::vector<std::string> steps = vtkLacunaProvenance::Get(output);
+  const std::vector<std::string> steps = lacuna::Provenance::Get(output);
   LACUNA_CHECK(steps.size() == 1 && steps[0].find("SupportMargin=6") != std::string::npos);
   LACUNA_CHECK(!std::strcmp(output->GetPointData()->GetScalars()->GetName(), "Depth"));
 }
@@ -287,7 +287,7 @@ void TestPiecesAndThreads()
   vtkImageData* part = filler->GetOutput();
   LACUNA_CHECK(!std::memcmp(part->GetExtent(), piece, sizeof(piece)));
   LACUNA_CHECK(part->GetFieldData()->GetArray("RBFPlane"));
-  LACUNA_CHECK(vtkLacunaDepthMap(part).GetPixelSpacing()[1] == 0.8); // still a depth map
+  LACUNA_CHECK(lacuna::DepthMap(part).GetPixelSpacing()[1] == 0.8); // still a depth map
   for (const char* name : { "Depth", "Fitted", "FilledMask", "Deviation", "vtkValidPointMask" })
   {
     for (int j = piece[2]; j <= piece[3]; ++j)

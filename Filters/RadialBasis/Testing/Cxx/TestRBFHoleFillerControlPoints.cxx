@@ -2,8 +2,8 @@
 // Control points press the surface in and pull it out, where they are and as far as they say.
 #include "RBFTestMaps.h"
 #include "lacunaCheck.h"
+#include "lacunaProvenance.h"
 #include "vtkDoubleArray.h"
-#include "vtkLacunaProvenance.h"
 #include "vtkLacunaRBFHoleFiller.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
@@ -46,7 +46,7 @@ void TestControlPoints()
   dragged->DeepCopy(filler->GetOutput());
   LACUNA_CHECK(std::abs(Get(dragged, "Depth", 32 * 80 + 40) - TestMap::Depth(50, 41.6)) < 0.2);
   LACUNA_CHECK(
-    vtkLacunaProvenance::Get(dragged)[0].find("ControlPointsInMap=") != std::string::npos);
+    lacuna::Provenance::Get(dragged)[0].find("ControlPointsInMap=") != std::string::npos);
 
   // a new filter gives the same bits, and one with depths instead of positions the same surface
   vtkNew<Filler> fresh;
@@ -132,7 +132,7 @@ void TestPulledOut()
 
   // in the world: the surface's own point there, and its normals lean away from it
   vtkImageData* output = filler->GetOutput();
-  const vtkLacunaDepthMap contract(output);
+  const lacuna::DepthMap contract(output);
   const lacuna::Vec3 tip = contract.GetPoint(
     TestMap::FirstColumn + column, TestMap::FirstRow + row, Get(output, "Depth", pixel));
   LACUNA_CHECK_NEAR(Norm(tip - (map.GetSurfacePoint(51, 40) - 3.0 * map.View)), 0, 1e-8);

@@ -2,10 +2,10 @@
 // Bad input: an error or warning that says what is wrong, and no half result.
 #include "RBFTestMaps.h"
 #include "lacunaCheck.h"
+#include "lacunaFieldData.h"
 #include "vtkCallbackCommand.h"
 #include "vtkFieldData.h"
 #include "vtkIdTypeArray.h"
-#include "vtkLacunaFieldData.h"
 #include "vtkLacunaRBFHoleFiller.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
@@ -56,7 +56,7 @@ const Case Errors[] = {
     "disagrees" },
   { "perspective map",
     [](TestMap& map, vtkLacunaRBFHoleFiller*) {
-      vtkLacunaFieldData::Set(map.Image, "EyePosition", { 0, 0, -500 }, 3);
+      lacuna::FieldData::Set(map.Image, "EyePosition", { 0, 0, -500 }, 3);
     },
     "perspective" },
   { "no depth at all",
@@ -171,7 +171,7 @@ const Case Errors[] = {
     {
       TestMap prior;
       const lacuna::Vec3 away = prior.Origin + 500.0 * prior.Right;
-      vtkLacunaDepthMap::SetGeometry(
+      lacuna::DepthMap::SetGeometry(
         prior.Image, { away, prior.Right, prior.Down, prior.View, { 1, 0.8 } });
       filler->SetInputDataObject(vtkLacunaRBFHoleFiller::PriorSurfacePort, prior.Image);
     },
@@ -229,7 +229,7 @@ int TestRBFHoleFillerErrors(int, char*[])
     // so many nodes that their matrix would exceed the limit: said before anything is allocated
     vtkNew<vtkImageData> large;
     large->SetDimensions(220, 180, 1);
-    vtkLacunaDepthMap::SetGeometry(
+    lacuna::DepthMap::SetGeometry(
       large, { { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 }, { 1, 1 } });
     vtkNew<vtkDoubleArray> depth;
     depth->SetName("Depth");

@@ -3,11 +3,11 @@
 #include "RBFTestMaps.h"
 #include "lacunaCheck.h"
 #include "lacunaParameterText.h"
+#include "lacunaProvenance.h"
 #include "vtkCylinder.h"
 #include "vtkDoubleArray.h"
 #include "vtkFieldData.h"
 #include "vtkIdTypeArray.h"
-#include "vtkLacunaProvenance.h"
 #include "vtkLacunaRBFHoleFiller.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
@@ -68,7 +68,7 @@ vtkSmartPointer<vtkSelection> MakeSelection(int content, const std::vector<vtkId
 
 std::string GetStep(Filler* filler)
 {
-  const std::vector<std::string> steps = vtkLacunaProvenance::Get(filler->GetOutput());
+  const std::vector<std::string> steps = lacuna::Provenance::Get(filler->GetOutput());
   return steps.empty() ? "" : steps.back();
 }
 
@@ -199,8 +199,7 @@ void TestMissedRegion()
   vtkNew<vtkLacunaRBFHoleFiller> filler;
   filler->SetInputData(map.Image);
   vtkNew<vtkSphere> sphere;
-  const lacuna::Vec3 surface =
-    vtkLacunaDepthMap(map.Image).GetPoint(50, 40, TestMap::Depth(50, 32));
+  const lacuna::Vec3 surface = lacuna::DepthMap(map.Image).GetPoint(50, 40, TestMap::Depth(50, 32));
   const lacuna::Vec3 normal = lacuna::Normalized(
     lacuna::Cross(map.Right + 0.3 * map.View, map.Down + -0.15 * map.View)); // away from the viewer
   const lacuna::Vec3 center = surface + 17.5 * normal;
@@ -303,7 +302,7 @@ void TestPriorOfAnotherView()
   };
   const auto fill = [&](TestMap& m)
   {
-    const vtkLacunaDepthMap contract(m.Image);
+    const lacuna::DepthMap contract(m.Image);
     dome(m,
       [&](vtkIdType i)
       {
@@ -318,7 +317,7 @@ void TestPriorOfAnotherView()
   prior.Right = lacuna::Normalized(lacuna::Cross(map.Down, prior.View));
   prior.Down = lacuna::Cross(prior.View, prior.Right);
   const lacuna::Vec3 origin = center - 120.0 * prior.View - 42.0 * prior.Right - 36.0 * prior.Down;
-  vtkLacunaDepthMap::SetGeometry(
+  lacuna::DepthMap::SetGeometry(
     prior.Image, { origin, prior.Right, prior.Down, prior.View, { 0.8, 0.72 } });
   fill(prior);
 
@@ -380,7 +379,7 @@ void TestOutputGrid()
   filler->Update();
   vtkNew<vtkImageData> whole;
   whole->DeepCopy(filler->GetOutput());
-  const vtkLacunaDepthMap contract(whole); // geometry and matrix agree
+  const lacuna::DepthMap contract(whole); // geometry and matrix agree
   const int* extent = whole->GetExtent();
   // 10..89 mm and 16..63.2 mm, and 8 mm around
   const int expected[6] = { 4, 194, 16, 142, 0, 0 };
@@ -433,10 +432,10 @@ void TestFieldData()
   LACUNA_CHECK(get("FitTime") > 0 && get("FitTime") < 100);
   LACUNA_CHECK(get("ConditionEstimate") > 1);
   LACUNA_CHECK(get("Iterations") == 0);
-  const std::string step = vtkLacunaProvenance::Get(filler->GetOutput()).back();
+  const std::string step = lacuna::Provenance::Get(filler->GetOutput()).back();
   filler->Modified();
   filler->Update();
-  LACUNA_CHECK(step == vtkLacunaProvenance::Get(filler->GetOutput()).back()); // no time in it
+  LACUNA_CHECK(step == lacuna::Provenance::Get(filler->GetOutput()).back()); // no time in it
   filler->SetSolver(Filler::Fast);
   LACUNA_CHECK(get("ConditionEstimate") == 0);
 }

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Scattered points become images: what comes out, on which grid, and errors.
 #include "lacunaCheck.h"
+#include "lacunaProvenance.h"
 #include "vtkDoubleArray.h"
 #include "vtkFieldData.h"
 #include "vtkImageData.h"
-#include "vtkLacunaProvenance.h"
 #include "vtkLacunaRBFInterpolator.h"
 #include "vtkPointData.h"
 #include "vtkPoints.h"
@@ -93,7 +93,7 @@ void CheckPlanes(bool flat, int count)
   }
   LACUNA_CHECK(worst < 1e-4 * 100);
   LACUNA_CHECK(image->GetFieldData()->GetArray("NodeCount")->GetComponent(0, 0) == count);
-  const std::vector<std::string> steps = vtkLacunaProvenance::Get(image);
+  const std::vector<std::string> steps = lacuna::Provenance::Get(image);
   LACUNA_CHECK(steps.size() == 1 &&
     steps[0].find("OutputSpacing=4,5,6 OutputBounds=-30,90,1,-1,0,50") != std::string::npos);
 }

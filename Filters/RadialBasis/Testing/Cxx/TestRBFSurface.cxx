@@ -2,6 +2,7 @@
 // Points, meshes and outlines become closed surfaces of the right volume.
 #include "lacunaCheck.h"
 #include "lacunaEllipsoid.h"
+#include "lacunaProvenance.h"
 #include "vtkCellArray.h"
 #include "vtkCleanPolyData.h"
 #include "vtkCubeSource.h"
@@ -10,7 +11,6 @@
 #include "vtkFieldData.h"
 #include "vtkImageData.h"
 #include "vtkImplicitPolyDataDistance.h"
-#include "vtkLacunaProvenance.h"
 #include "vtkLacunaRBFSurface.h"
 #include "vtkMassProperties.h"
 #include "vtkMath.h"
@@ -89,7 +89,7 @@ void CheckPoints()
   filter->Update();
   CheckSurface(filter->GetOutput(), 0.004, "points with normals");
   LACUNA_CHECK(GetField(filter->GetOutput(), "ResidualMaximum") < 0.05);
-  const std::vector<std::string> steps = vtkLacunaProvenance::Get(filter->GetOutput());
+  const std::vector<std::string> steps = lacuna::Provenance::Get(filter->GetOutput());
   LACUNA_CHECK(
     steps.size() == 1 && steps[0].find("Kernel=1 Smoothing=0 Accuracy=0.01") != std::string::npos);
   // the nearest of 1500 points on 5500 mm^2 is within 2 mm

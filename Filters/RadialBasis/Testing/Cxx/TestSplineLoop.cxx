@@ -3,7 +3,7 @@
 #include "RBFTestMaps.h"
 #include "lacunaCheck.h"
 #include "lacunaParameterText.h"
-#include "vtkLacunaProvenance.h"
+#include "lacunaProvenance.h"
 #include "vtkLacunaRBFHoleFiller.h"
 #include "vtkLacunaSplineLoop.h"
 #include "vtkPoints.h"
@@ -169,7 +169,7 @@ void TestProvenance()
   {
     filler->Modified();
     filler->Update();
-    const std::vector<std::string> steps = vtkLacunaProvenance::Get(filler->GetOutput());
+    const std::vector<std::string> steps = lacuna::Provenance::Get(filler->GetOutput());
     return steps.empty() ? std::string() : steps.back();
   };
   const std::string first = step();

@@ -2,13 +2,13 @@
 #include "vtkLacunaBSplineIsoRayCaster.h"
 
 #include "lacunaCheck.h"
+#include "lacunaDepthMap.h"
 #include "vtkDataArray.h"
 #include "vtkDoubleArray.h"
 #include "vtkExecutive.h"
 #include "vtkFieldData.h"
 #include "vtkFloatArray.h"
 #include "vtkImageData.h"
-#include "vtkLacunaDepthMap.h"
 #include "vtkMath.h"
 #include "vtkMatrix3x3.h"
 #include "vtkNew.h"
@@ -113,7 +113,7 @@ void TestContract()
       LACUNA_CHECK_THAT(
         dimensions[2] == 1 && map->GetExtent()[0] == 0 && map->GetExtent()[2] == 0, "W x H x 1");
 
-      const vtkLacunaDepthMap checked(map);
+      const lacuna::DepthMap checked(map);
       // the direction matrix is (right, down, view), right-handed
       vtkMatrix3x3* d = map->GetDirectionMatrix();
       LACUNA_CHECK_THAT(std::abs(d->Determinant() - 1) < 1e-12, "right-handed");
@@ -243,7 +243,7 @@ void TestRequestedExtent()
   other->UpdateExtent(part);
   vtkImageData* piece = other->GetOutput();
   LACUNA_CHECK_THAT(piece->GetNumberOfPoints() == 7 * 11, "exactly the requested extent");
-  vtkLacunaDepthMap checked(piece);
+  lacuna::DepthMap checked(piece);
   vtkIdType hits = 0;
   for (int r = part[2]; r <= part[3]; ++r)
   {

@@ -2,14 +2,14 @@
 #include "vtkLacunaDepthMapShader.h"
 
 #include "lacunaCheck.h"
+#include "lacunaDepthMap.h"
+#include "lacunaFieldData.h"
 #include "lacunaHandMadeMap.h"
+#include "lacunaProvenance.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkLacunaBSplineIsoRayCaster.h"
-#include "vtkLacunaDepthMap.h"
 #include "vtkLacunaDepthMapSurface.h"
-#include "vtkLacunaFieldData.h"
-#include "vtkLacunaProvenance.h"
 #include "vtkMath.h"
 #include "vtkNew.h"
 #include "vtkPlane.h"
@@ -95,8 +95,8 @@ void TestPicture()
   LACUNA_CHECK(data->GetArray("vtkValidPointMask") != nullptr);
   LACUNA_CHECK(data->GetNormals() && std::string(data->GetNormals()->GetName()) == "Normals");
   LACUNA_CHECK_THAT(data->GetArray("NormalDifference") == nullptr, "the stored normals were used");
-  const vtkLacunaDepthMap contract(image); // the output is a depth map still
-  const std::vector<std::string> steps = vtkLacunaProvenance::Get(image);
+  const lacuna::DepthMap contract(image); // the output is a depth map still
+  const std::vector<std::string> steps = lacuna::Provenance::Get(image);
   LACUNA_CHECK(steps.size() == 2 && steps[1].find("vtkLacunaDepthMapShader") != std::string::npos);
   if (lacunaCheck::Failures())
   {
@@ -335,10 +335,10 @@ void TestPerspective()
   const int columns = 15;
   const int rows = 11;
   const auto map = MakeMap(columns, rows, std::vector<double>(columns * rows, 0));
-  vtkLacunaFieldData::Set(map, vtkLacunaDepthMap::EyePositionName, { 7, -5, 50 }, 3);
-  vtkLacunaFieldData::Set(map, vtkLacunaDepthMap::ViewAngleName, { 70 }, 1);
+  lacuna::FieldData::Set(map, lacuna::DepthMap::EyePositionName, { 7, -5, 50 }, 3);
+  lacuna::FieldData::Set(map, lacuna::DepthMap::ViewAngleName, { 70 }, 1);
   const lacuna::Vec3 normal = lacuna::Normalized({ 0.3, -0.2, 0.9 });
-  const vtkLacunaDepthMap contract(map);
+  const lacuna::DepthMap contract(map);
   for (int i = 0; i < columns * rows; ++i)
   {
     const lacuna::Vec3 pixel = contract.GetPoint(i % columns, i / columns, 0);

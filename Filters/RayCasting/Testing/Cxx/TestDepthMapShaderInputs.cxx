@@ -4,12 +4,12 @@
 #include "vtkLacunaDepthMapShader.h"
 
 #include "lacunaCheck.h"
+#include "lacunaDepthMap.h"
+#include "lacunaFieldData.h"
 #include "lacunaHandMadeMap.h"
 #include "vtkExecutive.h"
 #include "vtkFloatArray.h"
 #include "vtkImageData.h"
-#include "vtkLacunaDepthMap.h"
-#include "vtkLacunaFieldData.h"
 #include "vtkMath.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
@@ -105,7 +105,7 @@ void TestBadInput()
   volume->GetPointData()->GetScalars()->Fill(0);
   volume->Modified();
   LACUNA_CHECK_CONTAINS(errorOf(map), "'IsoValues'");
-  vtkLacunaFieldData::Set(map, vtkLacunaDepthMap::IsoValuesName, { 1 }, 1);
+  lacuna::FieldData::Set(map, lacuna::DepthMap::IsoValuesName, { 1 }, 1);
   map->Modified();
   {
     const auto messages = lacunaCheck::Watch(shader);

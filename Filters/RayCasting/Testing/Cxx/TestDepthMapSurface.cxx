@@ -2,6 +2,7 @@
 #include "vtkLacunaDepthMapSurface.h"
 
 #include "lacunaCheck.h"
+#include "lacunaDepthMap.h"
 #include "vtkDataArray.h"
 #include "vtkDoubleArray.h"
 #include "vtkExecutive.h"
@@ -10,7 +11,6 @@
 #include "vtkIdTypeArray.h"
 #include "vtkImageData.h"
 #include "vtkLacunaBSplineIsoRayCaster.h"
-#include "vtkLacunaDepthMap.h"
 #include "vtkLacunaDepthMapShader.h"
 #include "vtkMath.h"
 #include "vtkNew.h"
@@ -55,7 +55,7 @@ void TestSurface()
   caster->SetViewDirection(0.1, 0.05, -1);
   caster->Update();
   vtkImageData* map = caster->GetOutput();
-  const vtkLacunaDepthMap checked(map);
+  const lacuna::DepthMap checked(map);
   vtkNew<vtkLacunaDepthMapSurface> filter;
   filter->SetInputConnection(caster->GetOutputPort());
   filter->Update();
@@ -201,7 +201,7 @@ void TestOtherArrays()
 {
   vtkNew<vtkImageData> map;
   map->SetExtent(10, 13, 20, 22, 0, 0);
-  vtkLacunaDepthMap::SetGeometry(
+  lacuna::DepthMap::SetGeometry(
     map, { { 1, 2, 3 }, { 1, 0, 0 }, { 0, -1, 0 }, { 0, 0, -1 }, { 0.5, 0.5 } });
   for (const char* name : { "Depth", "Fitted" })
   {
@@ -265,7 +265,7 @@ void TestBadInput()
   map->GetPointData()->AddArray(depth);
   LACUNA_CHECK_THAT(
     errorOf(map, "Depth", 65).find("ImageToWorld") != std::string::npos, "no geometry");
-  vtkLacunaDepthMap::SetGeometry(
+  lacuna::DepthMap::SetGeometry(
     map, { { 0, 0, 0 }, { 1, 0, 0 }, { 0, -1, 0 }, { 0, 0, -1 }, { 1, 1 } });
   LACUNA_CHECK_THAT(
     errorOf(map, "Fitted", 65).find("'Fitted'") != std::string::npos, "no such array");

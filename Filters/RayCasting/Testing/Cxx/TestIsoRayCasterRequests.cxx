@@ -3,6 +3,8 @@
 #include "vtkLacunaBSplineIsoRayCaster.h"
 
 #include "lacunaCheck.h"
+#include "lacunaDepthMap.h"
+#include "lacunaVersionCompat.h"
 #include "vtkAbstractArray.h"
 #include "vtkBox.h"
 #include "vtkCallbackCommand.h"
@@ -17,8 +19,6 @@
 #include "vtkImplicitBoolean.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
-#include "vtkLacunaDepthMap.h"
-#include "vtkLacunaVersionCompat.h"
 #include "vtkNew.h"
 #include "vtkPlane.h"
 #include "vtkPlanes.h"
@@ -237,7 +237,7 @@ void TestPerspective()
   caster->ComputeThicknessOn();
   caster->Update();
   vtkImageData* output = caster->GetOutput();
-  const vtkLacunaDepthMap map(output);
+  const lacuna::DepthMap map(output);
   LACUNA_CHECK_THAT(map.IsPerspective(), "EyePosition is recorded");
   LACUNA_CHECK_THAT(
     IsNear(output->GetFieldData()->GetArray("ViewAngle")->GetTuple1(0), 25), "ViewAngle");
@@ -369,7 +369,7 @@ protected:
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override
   {
     this->AbortExecuteOn();
-    vtkLacunaCheckAbort(this);
+    lacuna::CheckAbort(this);
     return 1;
   }
 };
@@ -394,7 +394,7 @@ void TestStoppedInput()
   executiveMessages->Watch(caster->GetExecutive());
   caster->Update();
   // where algorithms are not told of stops upstream, they miss their data
-  LACUNA_CHECK_THAT(!vtkLacunaTellsOfAbort || !messages->HasError("eye"), "no message");
+  LACUNA_CHECK_THAT(!lacuna::TellsOfAbort || !messages->HasError("eye"), "no message");
   LACUNA_CHECK_THAT(caster->GetOutput()->GetNumberOfPoints() == 0, "no output");
 }
 

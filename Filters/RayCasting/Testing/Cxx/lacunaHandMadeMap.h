@@ -4,9 +4,9 @@
 #ifndef lacunaHandMadeMap_h
 #define lacunaHandMadeMap_h
 
+#include "lacunaDepthMap.h"
 #include "vtkDoubleArray.h"
 #include "vtkImageData.h"
-#include "vtkLacunaDepthMap.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
 #include "vtkSmartPointer.h"
@@ -22,7 +22,7 @@ inline vtkSmartPointer<vtkImageData> MakeMap(
 {
   auto map = vtkSmartPointer<vtkImageData>::New();
   map->SetDimensions(columns, rows, 1);
-  vtkLacunaDepthMap::SetGeometry(
+  lacuna::DepthMap::SetGeometry(
     map, { { 0, 0, 40 }, { 1, 0, 0 }, { 0, -1, 0 }, { 0, 0, -1 }, { 1, 1 } });
   vtkNew<vtkDoubleArray> depth;
   depth->SetName("Depth");

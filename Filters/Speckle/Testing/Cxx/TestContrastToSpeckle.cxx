@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lacunaCheck.h"
+#include "lacunaProvenance.h"
 #include "vtkCallbackCommand.h"
 #include "vtkExecutive.h"
 #include "vtkFloatArray.h"
 #include "vtkImageData.h"
 #include "vtkIntArray.h"
 #include "vtkLacunaContrastToSpeckle.h"
-#include "vtkLacunaProvenance.h"
 #include "vtkPointData.h"
 #include "vtkSmartPointer.h"
 #include "vtkTable.h"
@@ -66,7 +66,7 @@ void TestMasksAndBoxes()
   LACUNA_CHECK_NEAR(Get(table, "CSR"), 50 / std::sqrt(2.0), 1e-12);
   LACUNA_CHECK(Get(table, "Regions") == 1);
   LACUNA_CHECK(Get(table, "IsoValue") == 30);
-  LACUNA_CHECK(vtkLacunaProvenance::Get(table).size() == 1);
+  LACUNA_CHECK(lacuna::Provenance::Get(table).size() == 1);
 
   // The columns of 12 stand alone; so do those of 62.
   contrast->SetIsoValue(11.5);
@@ -119,7 +119,7 @@ void TestProvenance()
   contrast->SetInsideArray("Left");
   contrast->SetOutsideBounds(104, 200, 0, 5.5, 0, 0);
   contrast->Update();
-  const auto steps = vtkLacunaProvenance::Get(contrast->GetOutput());
+  const auto steps = lacuna::Provenance::Get(contrast->GetOutput());
   LACUNA_CHECK(steps.size() == 1);
   LACUNA_CHECK_CONTAINS(
     steps.at(0), "InsideArray=Left OutsideBounds=104,200,0,5.5,0,0 IsoValue=128");

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lacunaCheck.h"
+#include "lacunaProvenance.h"
+#include "lacunaTrackedSlices.h"
 #include "vtkBitArray.h"
 #include "vtkCallbackCommand.h"
 #include "vtkDoubleArray.h"
@@ -10,9 +12,7 @@
 #include "vtkImageMedian3D.h"
 #include "vtkInformation.h"
 #include "vtkInformationStringKey.h"
-#include "vtkLacunaProvenance.h"
 #include "vtkLacunaSpeckleFilter.h"
-#include "vtkLacunaTrackedSlices.h"
 #include "vtkMatrix3x3.h"
 #include "vtkPointData.h"
 #include "vtkSOADataArrayTemplate.h"
@@ -93,7 +93,7 @@ void TestKeepsEverythingElse()
   const int extent[6] = { 3, 22, -4, 9, 2, 5 };
   const auto image = MakeImage(VTK_SHORT, extent);
   vtkNew<vtkDoubleArray> times;
-  times->SetName(vtkLacunaTrackedSlices::TimestampName);
+  times->SetName(lacuna::TrackedSlices::TimestampName);
   times->SetNumberOfTuples(40); // all slices of the sweep, however cropped the stack is
   times->Fill(1.5);
   image->GetFieldData()->AddArray(times);
@@ -115,14 +115,14 @@ void TestKeepsEverythingElse()
     LACUNA_CHECK(
       output->GetDirectionMatrix()->GetData()[i] == image->GetDirectionMatrix()->GetData()[i]);
   }
-  vtkDataArray* kept = output->GetFieldData()->GetArray(vtkLacunaTrackedSlices::TimestampName);
+  vtkDataArray* kept = output->GetFieldData()->GetArray(lacuna::TrackedSlices::TimestampName);
   LACUNA_CHECK(kept && kept->GetNumberOfTuples() == 40);
   vtkDataArray* mask = output->GetPointData()->GetArray("vtkValidPointMask");
   LACUNA_CHECK(mask && mask->GetComponent(1, 0) == 1 && mask->GetComponent(3, 0) == 0);
   LACUNA_CHECK(output->GetScalarType() == VTK_SHORT);
   LACUNA_CHECK(output->GetPointData()->GetNumberOfArrays() == 2);
   LACUNA_CHECK(std::string(output->GetPointData()->GetScalars()->GetName()) == "Echo");
-  const auto steps = vtkLacunaProvenance::Get(output);
+  const auto steps = lacuna::Provenance::Get(output);
   LACUNA_CHECK(steps.size() == 1);
   LACUNA_CHECK(!steps.empty() &&
     steps[0].find("Operation=Median KernelSize=5,5,1 KernelShape=Box") != std::string::npos);
@@ -529,7 +529,7 @@ void TestWarnsWhenSlicesAreMixed()
   const int extent[6] = { 0, 15, 0, 9, 0, 4 };
   const auto image = MakeImage(VTK_UNSIGNED_CHAR, extent);
   vtkNew<vtkUnsignedCharArray> status;
-  status->SetName(vtkLacunaTrackedSlices::SliceStatusName);
+  status->SetName(lacuna::TrackedSlices::SliceStatusName);
   status->SetNumberOfTuples(5);
   image->GetFieldData()->AddArray(status);
   for (const int z : { 1, 3 })

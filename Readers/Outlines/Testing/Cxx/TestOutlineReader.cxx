@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The reader in VTK: what is in the output, pieces, errors and recovery.
 #include "OutlineReaderTesting.h"
+#include "lacunaCoordinates.h"
+#include "lacunaProvenance.h"
 #include "vtkCellArray.h"
 #include "vtkErrorCode.h"
 #include "vtkFieldData.h"
 #include "vtkIdList.h"
 #include "vtkIntArray.h"
-#include "vtkLacunaCoordinates.h"
-#include "vtkLacunaProvenance.h"
 #include "vtkStringArray.h"
 #include "vtkUnsignedCharArray.h"
 
@@ -56,8 +56,8 @@ void TestOutput()
     LACUNA_CHECK(names->GetValue(1) == "Cyst" && names->GetNumberOfValues() == 3);
     LACUNA_CHECK(colors->GetNumberOfComponents() == 3 && data->GetScalars() == colors);
   }
-  LACUNA_CHECK(vtkLacunaCoordinates::Get(outlines).empty()); // a table does not say
-  const std::vector<std::string> steps = vtkLacunaProvenance::Get(outlines);
+  LACUNA_CHECK(lacuna::Coordinates::Get(outlines).empty()); // a table does not say
+  const std::vector<std::string> steps = lacuna::Provenance::Get(outlines);
   LACUNA_CHECK(steps.size() == 1 && steps[0].find("Jane") == std::string::npos);
 }
 

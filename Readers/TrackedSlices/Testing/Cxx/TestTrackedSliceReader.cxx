@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Output, properties and requests of the reader.
 #include "TrackedSliceReaderTesting.h"
+#include "lacunaFieldData.h"
+#include "lacunaProvenance.h"
+#include "lacunaTrackedSlices.h"
 #include "vtkDataArray.h"
 #include "vtkDoubleArray.h"
 #include "vtkFieldData.h"
 #include "vtkImageData.h"
-#include "vtkLacunaFieldData.h"
-#include "vtkLacunaProvenance.h"
-#include "vtkLacunaTrackedSlices.h"
 #include "vtkPointData.h"
 #include "vtkStringArray.h"
 #include "vtkTypeTraits.h"
@@ -93,21 +93,21 @@ void TestOutput()
   LACUNA_CHECK(scalars && scalars->GetDataType() == VTK_UNSIGNED_CHAR);
   CheckPixels(output);
 
-  const vtkLacunaTrackedSlices slices(output); // throws when the contract is not met
+  const lacuna::TrackedSlices slices(output); // throws when the contract is not met
   LACUNA_CHECK(slices.GetNumberOfSlices() == 6);
   const lacuna::Vec3 p = slices.GetImageToReference(2).Point({ 10, 20, 0 });
   LACUNA_CHECK(
     std::abs(p[0] + 76) < 1e-12 && std::abs(p[1] + 3) < 1e-12 && std::abs(p[2] - 35) < 1e-12);
-  LACUNA_CHECK(slices.GetStatus(2) == vtkLacunaTrackedSlices::Valid);
-  LACUNA_CHECK(slices.GetStatus(4) == vtkLacunaTrackedSlices::PoseInvalid);
+  LACUNA_CHECK(slices.GetStatus(2) == lacuna::TrackedSlices::Valid);
+  LACUNA_CHECK(slices.GetStatus(4) == lacuna::TrackedSlices::PoseInvalid);
   LACUNA_CHECK(std::isnan(slices.GetImageToReference(4)(0, 0)));
   LACUNA_CHECK(slices.GetTimestamp(5) == 15.25);
   vtkFieldData* fields = output->GetFieldData();
   LACUNA_CHECK(fields->GetArray("FrameNumber")->GetTuple1(3) == 506);
-  LACUNA_CHECK(vtkLacunaFieldData::Get(output, "ProbeToTracker", 16, 6)->GetComponent(4, 3) == 4);
+  LACUNA_CHECK(lacuna::FieldData::Get(output, "ProbeToTracker", 16, 6)->GetComponent(4, 3) == 4);
   LACUNA_CHECK(
-    vtkLacunaFieldData::Get(output, "ReferenceToTracker", 16, 6)->GetComponent(0, 7) == 100);
-  LACUNA_CHECK(vtkLacunaFieldData::Get(output, "ImageToProbe", 16, 1)->GetComponent(0, 11) == 5);
+    lacuna::FieldData::Get(output, "ReferenceToTracker", 16, 6)->GetComponent(0, 7) == 100);
+  LACUNA_CHECK(lacuna::FieldData::Get(output, "ImageToProbe", 16, 1)->GetComponent(0, 11) == 5);
   auto* notes = vtkStringArray::SafeDownCast(fields->GetAbstractArray("Note"));
   LACUNA_CHECK(notes && notes->GetNumberOfValues() == 6 && notes->GetValue(2) == "here");
   LACUNA_CHECK(fields->GetAbstractArray("ProbeToTrackerTransformStatus"));
@@ -119,7 +119,7 @@ void TestOutput()
     LACUNA_CHECK(!fields->GetAbstractArray(name));
   }
 
-  const std::vector<std::string> steps = vtkLacunaProvenance::Get(output);
+  const std::vector<std::string> steps = lacuna::Provenance::Get(output);
   LACUNA_CHECK(steps.size() == 1);
   LACUNA_CHECK_CONTAINS(steps.at(0), "FileName=sweep.igs.mha");
   LACUNA_CHECK_CONTAINS(steps.at(0), "FileSize=" + std::to_string(file.GetContent().size()));
@@ -191,7 +191,7 @@ void TestContradictions()
   ReaderOf test(file.GetContent());
   test.Reader->Update();
   LACUNA_CHECK_CONTAINS(test.Warnings, "in frames 3, 4");
-  const vtkLacunaTrackedSlices slices(test.Reader->GetOutput());
+  const lacuna::TrackedSlices slices(test.Reader->GetOutput());
   LACUNA_CHECK(slices.GetStatus(2) == 0 && slices.GetStatus(3) == 1 && slices.GetStatus(4) == 1);
   LACUNA_CHECK(!slices.GetImageToReference(3).IsFinite());
 }
@@ -236,7 +236,7 @@ void TestRequests()
   LACUNA_CHECK(got[4] == 0 && got[5] == 3); // 3, 7, 11, 15
   LACUNA_CHECK(output->GetOrigin()[2] == 3 && output->GetSpacing()[2] == 4);
   CheckPixels(output);
-  const vtkLacunaTrackedSlices slices(output);
+  const lacuna::TrackedSlices slices(output);
   LACUNA_CHECK(slices.GetNumberOfSlices() == 20);
   LACUNA_CHECK(slices.GetSliceNumber(2) == 11);
   const int second[6] = { 0, 4, 0, 3, 1, 1 };
@@ -253,7 +253,7 @@ void TestRequests()
 
   reader->SetReferenceFrame("Tracker");
   reader->UpdateWholeExtent();
-  const vtkLacunaTrackedSlices inTracker(output);
+  const lacuna::TrackedSlices inTracker(output);
   LACUNA_CHECK(inTracker.GetImageToReference(7).Point({ 0, 0, 0 })[0] == 7);
   LACUNA_CHECK(test.Errors.empty() && test.Warnings.empty());
 }
@@ -266,14 +266,14 @@ void TestDropInvalidSlices()
   file.SetFrame(3, "ProbeToTrackerTransform", "nan");
   ReaderOf test(file.GetContent());
   test.Reader->Update();
-  const vtkLacunaTrackedSlices flagged(test.Reader->GetOutput());
+  const lacuna::TrackedSlices flagged(test.Reader->GetOutput());
   LACUNA_CHECK(flagged.GetStatus(0) == 0 && flagged.GetStatus(1) == 1);
   LACUNA_CHECK(flagged.GetStatus(2) == 2 && flagged.GetStatus(3) == 1);
   LACUNA_CHECK(test.Reader->GetOutput()->GetDimensions()[2] == 4); // z stays the slice number
   LACUNA_CHECK_CONTAINS(test.Warnings, "has 1 numbers, not 16 in frame 3");
   test.Reader->DropInvalidSlicesOff();
   test.Reader->Update();
-  const vtkLacunaTrackedSlices trusted(test.Reader->GetOutput());
+  const lacuna::TrackedSlices trusted(test.Reader->GetOutput());
   LACUNA_CHECK(trusted.GetStatus(1) == 0 && trusted.GetStatus(2) == 0 && trusted.GetStatus(3) == 1);
   LACUNA_CHECK(trusted.GetImageToReference(1).IsFinite());
 }

@@ -2,13 +2,13 @@
 // ReplayInTime, and reading no more than is asked for.
 #include "Compress.h"
 #include "TrackedSliceReaderTesting.h"
+#include "lacunaTrackedSlices.h"
 #include "vtkDataArray.h"
 #include "vtkDataObject.h"
 #include "vtkFieldData.h"
 #include "vtkImageData.h"
 #include "vtkImageThreshold.h"
 #include "vtkInformation.h"
-#include "vtkLacunaTrackedSlices.h"
 #include "vtkPointData.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 
@@ -69,7 +69,7 @@ void TestGrowing(const std::string& content)
     CheckStack(reader, slices);
     vtkImageData* output = reader->GetOutput();
     LACUNA_CHECK(output->GetInformation()->Get(vtkDataObject::DATA_TIME_STEP()) == 9.25 + slices);
-    const vtkLacunaTrackedSlices tracked(output);
+    const lacuna::TrackedSlices tracked(output);
     LACUNA_CHECK(tracked.GetNumberOfSlices() == 6); // the whole sweep
     LACUNA_CHECK(tracked.GetImageToReference(5).IsFinite());
   }

@@ -2,6 +2,9 @@
 // What was read comes back.
 #include "NrrdFile.h"
 #include "TrackedSliceReaderTesting.h"
+#include "lacunaFieldData.h"
+#include "lacunaProvenance.h"
+#include "lacunaTrackedSlices.h"
 #include "vtkDataArray.h"
 #include "vtkDoubleArray.h"
 #include "vtkErrorCode.h"
@@ -9,10 +12,7 @@
 #include "vtkFieldData.h"
 #include "vtkImageData.h"
 #include "vtkIntArray.h"
-#include "vtkLacunaFieldData.h"
-#include "vtkLacunaProvenance.h"
 #include "vtkLacunaTrackedSliceWriter.h"
-#include "vtkLacunaTrackedSlices.h"
 #include "vtkPointData.h"
 #include "vtkStringArray.h"
 
@@ -197,9 +197,9 @@ void TestRoundTrip(const std::string& content, const std::set<std::string>& adde
       twice.Reader->SetDropInvalidSlices(drop);
       twice.Reader->Update();
       CheckSame(copy.Reader->GetOutput(), twice.Reader->GetOutput(), {}, "second copy");
-      const auto steps = vtkLacunaProvenance::Get(twice.Reader->GetOutput());
+      const auto steps = lacuna::Provenance::Get(twice.Reader->GetOutput());
       LACUNA_CHECK(
-        steps.size() == 3 && steps[0] == vtkLacunaProvenance::Get(test.Reader->GetOutput())[0]);
+        steps.size() == 3 && steps[0] == lacuna::Provenance::Get(test.Reader->GetOutput())[0]);
     }
   }
 }
@@ -316,7 +316,7 @@ void TestPatientsFrame()
   copy.Reader->Update();
   const auto first = [](ReaderOf& reader)
   {
-    return vtkLacunaTrackedSlices(reader.Reader->GetOutput())
+    return lacuna::TrackedSlices(reader.Reader->GetOutput())
       .GetImageToReference(1)
       .Point({ 1, 2, 0 });
   };
@@ -330,7 +330,7 @@ void TestPartsOfCropped()
   ReaderOf test(MakeCropped(4).GetContent());
   test.Reader->Update();
   LACUNA_CHECK(test.Warnings.empty());
-  const vtkLacunaTrackedSlices whole(test.Reader->GetOutput());
+  const lacuna::TrackedSlices whole(test.Reader->GetOutput());
   vtkNew<vtkExtractVOI> part;
   part->SetInputConnection(test.Reader->GetOutputPort());
   part->SetVOI(1, 3, 1, 3, 0, 3);
@@ -346,7 +346,7 @@ void TestPartsOfCropped()
     ReaderOf copy(ReadAll(path), false);
     copy.Reader->Update();
     LACUNA_CHECK(copy.Errors.empty() && copy.Warnings.empty());
-    const vtkLacunaTrackedSlices slices(copy.Reader->GetOutput());
+    const lacuna::TrackedSlices slices(copy.Reader->GetOutput());
     const lacuna::Vec3 there = whole.GetImageToReference(3).Point({ 3, 2, 0 });
     LACUNA_CHECK(slices.GetStatus(3) == 0);
     LACUNA_CHECK(Norm(slices.GetImageToReference(3).Point({ 2. / step, 1, 0 }) - there) < 1e-12);
@@ -354,7 +354,7 @@ void TestPartsOfCropped()
     copy.File.WriteBeside("other.xml", MakeCalibration("0.1 0 0 0 0 0.2 0 0 0 0 0.1 9 0 0 0 1"));
     copy.Reader->SetCalibrationFileName(Beside(copy, "other.xml").c_str());
     copy.Reader->Update();
-    const vtkLacunaTrackedSlices moved(copy.Reader->GetOutput());
+    const lacuna::TrackedSlices moved(copy.Reader->GetOutput());
     const lacuna::Vec3 off = moved.GetImageToReference(3).Point({ 2. / step, 1, 0 }) - there;
     LACUNA_CHECK(Norm(off - lacuna::Vec3{ 0, 0, 4 }) < 1e-12);
   }
@@ -380,11 +380,12 @@ void TestCorrectedPoses()
   ReaderOf copy(ReadAll(path)); // with the calibration file
   copy.Reader->Update();
   LACUNA_CHECK_CONTAINS(copy.Warnings, "calibration file is not used");
-  const vtkLacunaTrackedSlices slices(copy.Reader->GetOutput());
+  const lacuna::TrackedSlices slices(copy.Reader->GetOutput());
   LACUNA_CHECK(slices.GetImageToReference(2)(0, 3) == 1234.5);
   LACUNA_CHECK(slices.GetStatus(0) == 64 && slices.GetStatus(1) == 14 && slices.GetStatus(3) == 1);
-  LACUNA_CHECK(vtkLacunaFieldData::Get(copy.Reader->GetOutput(), "ProbeToTracker", 16, 4)
-                 ->GetComponent(2, 3) == 2); // as measured
+  LACUNA_CHECK(
+    lacuna::FieldData::Get(copy.Reader->GetOutput(), "ProbeToTracker", 16, 4)->GetComponent(2, 3) ==
+    2); // as measured
 
   // a stack that has poses only, in a frame of another name
   for (const char* name : { "ProbeToTracker", "ReferenceToTracker", "ImageToProbe" })
@@ -398,7 +399,7 @@ void TestCorrectedPoses()
   ReaderOf other(ReadAll(path), false);
   other.Reader->SetReferenceFrame("Table");
   other.Reader->Update();
-  const vtkLacunaTrackedSlices onTable(other.Reader->GetOutput());
+  const lacuna::TrackedSlices onTable(other.Reader->GetOutput());
   LACUNA_CHECK(onTable.GetImageToReference(2)(0, 3) == 1234.5);
 }
 
@@ -408,7 +409,7 @@ void TestWindows()
 {
   ReaderOf test(MakeSequence(4).GetContent());
   test.Reader->Update();
-  const vtkLacunaTrackedSlices whole(test.Reader->GetOutput());
+  const lacuna::TrackedSlices whole(test.Reader->GetOutput());
   vtkNew<vtkExtractVOI> crop;
   crop->SetInputConnection(test.Reader->GetOutputPort());
   crop->SetVOI(2, 4, 1, 3, 0, 3);
@@ -428,7 +429,7 @@ void TestWindows()
       LACUNA_CHECK(output->GetOrigin()[0] == 2 && output->GetOrigin()[1] == 1);
       LACUNA_CHECK(output->GetScalarComponentAsDouble(2, 1, 3, 0) == GetGrey(4, 2, 3));
       LACUNA_CHECK(!output->GetFieldData()->HasArray("FirstColumn"));
-      const vtkLacunaTrackedSlices slices(output);
+      const lacuna::TrackedSlices slices(output);
       for (int k = 0; k < 4; ++k)
       {
         const lacuna::Vec3 here = slices.GetImageToReference(k).Point({ 4, 2, 0 });
@@ -445,12 +446,11 @@ void TestWindows()
       LACUNA_CHECK(copy->GetOutput()->GetOrigin()[0] == 2);
       const auto point = [](vtkImageData* stack)
       {
-        return vtkLacunaFieldData::GetMatrix(
-          vtkLacunaFieldData::Get(stack, "ImageToProbe", 16, 1), 0)
+        return lacuna::FieldData::GetMatrix(lacuna::FieldData::Get(stack, "ImageToProbe", 16, 1), 0)
           .Point({ 4, 2, 0 });
       };
       LACUNA_CHECK(Norm(point(copy->GetOutput()) - point(test.Reader->GetOutput())) < 1e-12);
-      const vtkLacunaTrackedSlices third(copy->GetOutput());
+      const lacuna::TrackedSlices third(copy->GetOutput());
       LACUNA_CHECK(Norm(third.GetImageToReference(3).Point({ 4, 2, 0 }) -
                      whole.GetImageToReference(3).Point({ 4, 2, 0 })) < 1e-12);
     }
@@ -462,7 +462,7 @@ void TestCrops()
 {
   ReaderOf test(MakeSequence(8).GetContent());
   test.Reader->Update();
-  const vtkLacunaTrackedSlices whole(test.Reader->GetOutput());
+  const lacuna::TrackedSlices whole(test.Reader->GetOutput());
   vtkNew<vtkExtractVOI> crop;
   crop->SetInputConnection(test.Reader->GetOutputPort());
   crop->SetVOI(2, 4, 1, 3, 3, 7);
@@ -477,7 +477,7 @@ void TestCrops()
   vtkImageData* output = copy.Reader->GetOutput();
   LACUNA_CHECK(output->GetDimensions()[0] == 2 && output->GetDimensions()[1] == 3);
   LACUNA_CHECK(output->GetDimensions()[2] == 3); // 3, 5, 7
-  const vtkLacunaTrackedSlices slices(output);
+  const lacuna::TrackedSlices slices(output);
   LACUNA_CHECK(slices.GetNumberOfSlices() == 3);
   for (int k = 0; k < 3; ++k)
   {
@@ -492,7 +492,7 @@ void TestCrops()
     }
   }
   const lacuna::Matrix4 probe =
-    vtkLacunaFieldData::GetMatrix(vtkLacunaFieldData::Get(output, "ImageToProbe", 16, 1), 0);
+    lacuna::FieldData::GetMatrix(lacuna::FieldData::Get(output, "ImageToProbe", 16, 1), 0);
   LACUNA_CHECK_NEAR(probe.Point({ 1, 2, 0 })[0], 0.4, 1e-12); // column 4 of 0.1 mm
   LACUNA_CHECK_NEAR(probe.Point({ 1, 2, 0 })[1], 0.6, 1e-12);
 }

@@ -2,15 +2,15 @@
 // The reader in VTK: NIfTI files by way of VTK's header, requested parts, errors and recovery.
 #include "NrrdFile.h"
 #include "lacunaCheck.h"
+#include "lacunaCoordinates.h"
+#include "lacunaProvenance.h"
+#include "lacunaVolumeDirection.h"
 #include "vtkCallbackCommand.h"
 #include "vtkDataArray.h"
 #include "vtkErrorCode.h"
 #include "vtkExecutive.h"
 #include "vtkFieldData.h"
 #include "vtkImageData.h"
-#include "vtkLacunaCoordinates.h"
-#include "vtkLacunaProvenance.h"
-#include "vtkLacunaVolumeDirection.h"
 #include "vtkLacunaVolumeReader.h"
 #include "vtkMatrix3x3.h"
 #include "vtkMatrix4x4.h"
@@ -148,10 +148,10 @@ void TestNifti()
   LACUNA_CHECK(test.Messages->Errors.empty());
   LACUNA_CHECK(image->GetScalarType() == VTK_INT);
   LACUNA_CHECK_NEAR(image->GetDirectionMatrix()->Determinant(), 1, 1e-12);
-  LACUNA_CHECK(vtkLacunaCoordinates::Get(image) == vtkLacunaCoordinates::Patient);
-  vtkLacunaVolumeDirection::Check(image);
-  LACUNA_CHECK(image->GetFieldData()->HasArray(vtkLacunaVolumeDirection::ArrayName));
-  const std::string provenance = vtkLacunaProvenance::Get(image).back();
+  LACUNA_CHECK(lacuna::Coordinates::Get(image) == lacuna::Coordinates::Patient);
+  lacuna::VolumeDirection::Check(image);
+  LACUNA_CHECK(image->GetFieldData()->HasArray(lacuna::VolumeDirection::ArrayName));
+  const std::string provenance = lacuna::Provenance::Get(image).back();
   LACUNA_CHECK_CONTAINS(provenance, "FileName=fnv1a:");
   LACUNA_CHECK(provenance.find("ct.nii") == std::string::npos);
   file.Swapped = true;

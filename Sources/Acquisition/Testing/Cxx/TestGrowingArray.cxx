@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lacunaCheck.h"
+#include "lacunaGrowingStack.h"
 #include "vtkDataArray.h"
 #include "vtkDoubleArray.h"
-#include "vtkLacunaSliceStack.h"
 #include "vtkNew.h"
 
 #include <memory>
@@ -20,7 +20,7 @@ bool HasNumbers(vtkDataArray* view, vtkIdType count)
   return right;
 }
 
-void Append(vtkLacunaGrowingArray& array, vtkIdType i)
+void Append(lacuna::GrowingArray& array, vtkIdType i)
 {
   const double tuple[2] = { static_cast<double>(i), static_cast<double>(-i) };
   array.Append(tuple);
@@ -33,7 +33,7 @@ int TestGrowingArray(int, char*[])
   vtkNew<vtkDoubleArray> shallow;
   vtkNew<vtkDoubleArray> deep;
   {
-    vtkLacunaGrowingArray array("Numbers", VTK_DOUBLE, 2);
+    lacuna::GrowingArray array("Numbers", VTK_DOUBLE, 2);
     LACUNA_CHECK(array.MakeView()->GetNumberOfTuples() == 0);
     for (vtkIdType i = 0; i < 1000; ++i)
     {
@@ -45,7 +45,7 @@ int TestGrowingArray(int, char*[])
     deep->DeepCopy(views[501]);
     // without reserve its memory has moved; with it, it does not
     LACUNA_CHECK(views[0]->GetVoidPointer(0) != views[999]->GetVoidPointer(0));
-    vtkLacunaGrowingArray reserved("Numbers", VTK_DOUBLE, 2);
+    lacuna::GrowingArray reserved("Numbers", VTK_DOUBLE, 2);
     reserved.Reserve(vtkIdType{ 1 } << 22); // 64 MiB, which are not touched
     Append(reserved, 0);
     const auto first = reserved.MakeView();

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // An emulated FASTRAK behind the real libserialport, and a test signal of FFmpeg.
 #include "lacunaClock.h"
+#include "lacunaFieldData.h"
+#include "lacunaProvenance.h"
 #include "lacunaTestBench.h"
+#include "lacunaTrackedSlices.h"
 #include "vtkDataArray.h"
 #include "vtkFieldData.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
-#include "vtkLacunaFieldData.h"
-#include "vtkLacunaProvenance.h"
 #include "vtkLacunaTrackedSliceReader.h"
-#include "vtkLacunaTrackedSlices.h"
 #include "vtkPointData.h"
 #include "vtkUnsignedCharArray.h"
 
@@ -74,16 +74,16 @@ void TestSlices()
   LACUNA_CHECK(output->GetOrigin()[0] == 10 && output->GetOrigin()[1] == 20);
   LACUNA_CHECK(source->GetFrameCount() == count);
 
-  const vtkLacunaTrackedSlices slices(output);
-  vtkDataArray* probe = vtkLacunaFieldData::Get(output, "ProbeToTracker", 16, count);
-  vtkDataArray* frames = vtkLacunaFieldData::Get(output, "FrameNumber", 1, count);
-  vtkDataArray* residuals = vtkLacunaFieldData::Get(output, "Residual", 1, count);
-  vtkLacunaFieldData::Get(output, "Speed", 1, count);
+  const lacuna::TrackedSlices slices(output);
+  vtkDataArray* probe = lacuna::FieldData::Get(output, "ProbeToTracker", 16, count);
+  vtkDataArray* frames = lacuna::FieldData::Get(output, "FrameNumber", 1, count);
+  vtkDataArray* residuals = lacuna::FieldData::Get(output, "Residual", 1, count);
+  lacuna::FieldData::Get(output, "Speed", 1, count);
   for (vtkIdType i = 0; i < count; ++i)
   {
     // a busy computer may make slices without a pose, but never wrong ones
     const bool valid = slices.IsUsable(i);
-    const lacuna::Matrix4 pose = vtkLacunaFieldData::GetMatrix(probe, i);
+    const lacuna::Matrix4 pose = lacuna::FieldData::GetMatrix(probe, i);
     LACUNA_CHECK(valid == pose.IsFinite());
     LACUNA_CHECK(!valid || Distance(pose, Still) < 1e-3);
     LACUNA_CHECK(!valid || Distance(slices.GetImageToReference(i), pose * imageToProbe) < 1e-9);
@@ -92,10 +92,10 @@ void TestSlices()
     LACUNA_CHECK(i == 0 || frames->GetComponent(i, 0) == frames->GetComponent(i - 1, 0) + 1);
     LACUNA_CHECK(i == 0 || slices.GetTimestamp(i) > slices.GetTimestamp(i - 1));
   }
-  LACUNA_CHECK(Distance(vtkLacunaFieldData::GetMatrix(
-                          vtkLacunaFieldData::Get(output, "ImageToProbe", 16, 1), 0),
-                 imageToProbe) < 1e-12);
-  const std::vector<std::string> provenance = vtkLacunaProvenance::Get(output);
+  LACUNA_CHECK(
+    Distance(lacuna::FieldData::GetMatrix(lacuna::FieldData::Get(output, "ImageToProbe", 16, 1), 0),
+      imageToProbe) < 1e-12);
+  const std::vector<std::string> provenance = lacuna::Provenance::Get(output);
   LACUNA_CHECK(provenance.size() == 1);
   LACUNA_CHECK_CONTAINS(provenance[0], "VideoURL=\"lavfi:testsrc2=size=64x48:rate=25\"");
 
@@ -129,7 +129,7 @@ void TestSlices()
                  static_cast<std::size_t>(output->GetNumberOfPoints())) == 0);
   LACUNA_CHECK(read->GetOrigin()[0] == 10 && read->GetOrigin()[1] == 20);
   LACUNA_CHECK(!read->GetFieldData()->HasArray("FirstColumn")); // would be wrong of a part of it
-  const vtkLacunaTrackedSlices again(read);
+  const lacuna::TrackedSlices again(read);
   for (vtkIdType i = 0; i < count; ++i)
   {
     LACUNA_CHECK(again.GetStatus(i) == slices.GetStatus(i));
@@ -137,8 +137,8 @@ void TestSlices()
     LACUNA_CHECK(!slices.IsUsable(i) ||
       Distance(again.GetImageToReference(i), slices.GetImageToReference(i)) < 1e-9);
     LACUNA_CHECK(!slices.IsUsable(i) ||
-      Distance(vtkLacunaFieldData::GetMatrix(read->GetFieldData()->GetArray("ProbeToTracker"), i),
-        vtkLacunaFieldData::GetMatrix(probe, i)) < 1e-12);
+      Distance(lacuna::FieldData::GetMatrix(read->GetFieldData()->GetArray("ProbeToTracker"), i),
+        lacuna::FieldData::GetMatrix(probe, i)) < 1e-12);
   }
 
   source->Clear();

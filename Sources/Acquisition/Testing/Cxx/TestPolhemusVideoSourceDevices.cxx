@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Devices that change, come late, or are set in another way, behind the real libserialport.
+#include "lacunaFieldData.h"
+#include "lacunaProvenance.h"
 #include "lacunaTestBench.h"
+#include "lacunaTrackedSlices.h"
 #include "vtkDataArray.h"
 #include "vtkFieldData.h"
 #include "vtkImageData.h"
-#include "vtkLacunaFieldData.h"
-#include "vtkLacunaProvenance.h"
 #include "vtkLacunaTrackedSliceReader.h"
-#include "vtkLacunaTrackedSlices.h"
 
 #include <chrono>
 #include <filesystem>
@@ -80,7 +80,7 @@ void TestFiguresStayWithTheSlices()
   const auto grows = [source]
   {
     source->Update();
-    return vtkLacunaTrackedSlices::IsGrowing(source->GetOutput(0));
+    return lacuna::TrackedSlices::IsGrowing(source->GetOutput(0));
   };
   LACUNA_CHECK(grows());
   source->Stop();
@@ -226,7 +226,7 @@ void TestKeptSlicesStayAsTheyWere()
   LACUNA_CHECK(bench.PollUntil([&] { return has(1, 50); }));
   LACUNA_CHECK(has(0, 6));
   const auto names = [&](int port, const char* size) {
-    return vtkLacunaProvenance::Get(source->GetOutput(port)).at(0).find(size) != std::string::npos;
+    return lacuna::Provenance::Get(source->GetOutput(port)).at(0).find(size) != std::string::npos;
   };
   LACUNA_CHECK(names(0, "64x48") && !names(0, "32x24"));
   LACUNA_CHECK(names(1, "32x24"));
@@ -247,14 +247,14 @@ void TestCalibrationsAndMoments()
     vtkImageData* output = source->GetOutput(port);
     const vtkIdType count = output->GetDimensions()[2];
     LACUNA_CHECK(output->GetFieldData()->GetArray("ImageToProbe")->GetComponent(0, 3) == x);
-    vtkDataArray* poses = vtkLacunaFieldData::Get(output, "ImageToReference", 16, count);
-    vtkDataArray* probes = vtkLacunaFieldData::Get(output, "ProbeToTracker", 16, count);
+    vtkDataArray* poses = lacuna::FieldData::Get(output, "ImageToReference", 16, count);
+    vtkDataArray* probes = lacuna::FieldData::Get(output, "ProbeToTracker", 16, count);
     for (vtkIdType i = 0; i < count; ++i)
     {
-      const lacuna::Matrix4 pose = vtkLacunaFieldData::GetMatrix(poses, i);
+      const lacuna::Matrix4 pose = lacuna::FieldData::GetMatrix(poses, i);
       LACUNA_CHECK(!pose.IsFinite() ||
         lacuna::Norm(pose.Point({ 0, 0, 0 }) -
-          vtkLacunaFieldData::GetMatrix(probes, i).Point({ x, 0, 0 })) < 1e-9);
+          lacuna::FieldData::GetMatrix(probes, i).Point({ x, 0, 0 })) < 1e-9);
     }
   };
   source->Connect();
@@ -404,8 +404,8 @@ lacuna::Matrix4 GetNewestPose(vtkLacunaPolhemusVideoSource* source)
   source->Update();
   vtkImageData* output = source->GetOutput(0);
   const vtkIdType count = output->GetDimensions()[2];
-  return vtkLacunaFieldData::GetMatrix(
-    vtkLacunaFieldData::Get(output, "ProbeToTracker", 16, count), count - 1);
+  return lacuna::FieldData::GetMatrix(
+    lacuna::FieldData::Get(output, "ProbeToTracker", 16, count), count - 1);
 }
 
 bool HasPose(vtkLacunaPolhemusVideoSource* source)

@@ -3,12 +3,12 @@
 // picture arrive as they were sent, in one slice, and nothing is mirrored on the way.
 #include "lacunaCheck.h"
 #include "lacunaClock.h"
+#include "lacunaFieldData.h"
 #include "lacunaTestOpenIGTLink.h"
+#include "lacunaTrackedSlices.h"
 #include "vtkDataArray.h"
 #include "vtkImageData.h"
-#include "vtkLacunaFieldData.h"
 #include "vtkLacunaPolhemusVideoSource.h"
-#include "vtkLacunaTrackedSlices.h"
 
 #include <array>
 #include <atomic>
@@ -153,9 +153,9 @@ int TestPolhemusVideoSourceOpenIGTLink(int, char*[])
   vtkImageData* output = source->GetOutput(0);
   const int count = output->GetDimensions()[2];
   LACUNA_CHECK(output->GetDimensions()[0] == Columns && output->GetDimensions()[1] == Rows);
-  const vtkLacunaTrackedSlices slices(output);
-  vtkDataArray* probe = vtkLacunaFieldData::Get(output, "ProbeToTracker", 16, count);
-  vtkDataArray* said = vtkLacunaFieldData::Get(output, "ElementSpacing", 2, count);
+  const lacuna::TrackedSlices slices(output);
+  vtkDataArray* probe = lacuna::FieldData::Get(output, "ProbeToTracker", 16, count);
+  vtkDataArray* said = lacuna::FieldData::Get(output, "ElementSpacing", 2, count);
   int right = 0;
   int usable = 0;
   int flagged = 0;
@@ -166,12 +166,12 @@ int TestPolhemusVideoSourceOpenIGTLink(int, char*[])
     flagged += contradicts ? 1 : 0;
     if (contradicts)
     {
-      LACUNA_CHECK((slices.GetStatus(i) & vtkLacunaTrackedSlices::PoseInvalid) != 0);
+      LACUNA_CHECK((slices.GetStatus(i) & lacuna::TrackedSlices::PoseInvalid) != 0);
       LACUNA_CHECK(!slices.GetImageToReference(i).IsFinite());
       continue;
     }
     // x = 120 + 30 time, of AsymmetricPose, tells the time
-    const lacuna::Matrix4 pose = vtkLacunaFieldData::GetMatrix(probe, i);
+    const lacuna::Matrix4 pose = lacuna::FieldData::GetMatrix(probe, i);
     const auto* pixels = static_cast<const unsigned char*>(output->GetScalarPointer(0, 0, i));
     if (!slices.IsUsable(i))
     {

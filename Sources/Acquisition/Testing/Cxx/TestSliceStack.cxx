@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Slices of which the video says another size of pixels than the calibration are flagged.
 #include "lacunaCheck.h"
+#include "lacunaGrowingStack.h"
+#include "lacunaTrackedSlices.h"
 #include "vtkDataArray.h"
 #include "vtkFieldData.h"
 #include "vtkImageData.h"
-#include "vtkLacunaSliceStack.h"
-#include "vtkLacunaTrackedSlices.h"
 #include "vtkNew.h"
 
 #include <memory>
@@ -35,18 +35,18 @@ lacuna::SweepFrame MakeFrame(double column, double row)
 }
 
 // One flag for each slice; a flagged one has no pose, any other has its own.
-void Check(const vtkLacunaSliceStack& stack, const std::vector<int>& flags, double column)
+void Check(const lacuna::GrowingStack& stack, const std::vector<int>& flags, double column)
 {
   vtkNew<vtkImageData> output;
   stack.Fill(output);
-  const vtkLacunaTrackedSlices slices(output);
+  const lacuna::TrackedSlices slices(output);
   LACUNA_CHECK(slices.GetNumberOfSlices() == static_cast<vtkIdType>(flags.size()));
   for (vtkIdType i = 0; i < slices.GetNumberOfSlices(); ++i)
   {
     const int flag = flags[static_cast<std::size_t>(i)];
     LACUNA_CHECK(slices.GetStatus(i) == flag);
     const lacuna::Matrix4 pose = slices.GetImageToReference(i);
-    LACUNA_CHECK(pose.IsFinite() == ((flag & vtkLacunaTrackedSlices::PoseInvalid) == 0));
+    LACUNA_CHECK(pose.IsFinite() == ((flag & lacuna::TrackedSlices::PoseInvalid) == 0));
     if (pose.IsFinite())
     {
       LACUNA_CHECK(pose.Point({ 10, 0, 0 })[0] == 10 * column);
@@ -58,7 +58,7 @@ void Check(const vtkLacunaSliceStack& stack, const std::vector<int>& flags, doub
 
 int TestSliceStack(int, char*[])
 {
-  vtkLacunaSliceStack stack(MakeFrame(0.25, 0.5), 0);
+  lacuna::GrowingStack stack(MakeFrame(0.25, 0.5), 0);
   stack.Append(MakeSlice(0, std::nullopt));
   vtkNew<vtkImageData> silent;
   stack.Fill(silent);
@@ -66,7 +66,7 @@ int TestSliceStack(int, char*[])
   stack.Append(MakeSlice(1, lacuna::Vec2{ 0.25, 0.5 }));
   stack.Append(MakeSlice(2, lacuna::Vec2{ 0.5, 1 }));
   lacuna::AcquiredSlice fast = MakeSlice(3, lacuna::Vec2{ 0.25, 1 });
-  fast.Status = vtkLacunaTrackedSlices::TooFast;
+  fast.Status = lacuna::TrackedSlices::TooFast;
   stack.Append(fast);
   stack.Append(MakeSlice(4, lacuna::Vec2{ 0, 0.5 })); // which cannot be, and says nothing
   Check(stack, { 0, 0, 1, 5, 0 }, 0.25);
@@ -79,7 +79,7 @@ int TestSliceStack(int, char*[])
   stack.Append(MakeSlice(5, lacuna::Vec2{ 0.5, 1 }));
   Check(stack, { 0, 1, 0, 5, 0, 0 }, 0.5);
   // an output that was made keeps what it showed
-  LACUNA_CHECK(vtkLacunaTrackedSlices(before).GetStatus(2) == vtkLacunaTrackedSlices::PoseInvalid);
+  LACUNA_CHECK(lacuna::TrackedSlices(before).GetStatus(2) == lacuna::TrackedSlices::PoseInvalid);
 
   vtkNew<vtkImageData> output;
   stack.Fill(output);

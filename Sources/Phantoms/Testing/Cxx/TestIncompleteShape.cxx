@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lacunaCheck.h"
+#include "lacunaProvenance.h"
 #include "vtkDataArray.h"
 #include "vtkExecutive.h"
 #include "vtkFieldData.h"
 #include "vtkImageData.h"
 #include "vtkLacunaIncompleteShape.h"
-#include "vtkLacunaProvenance.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
 
@@ -24,7 +24,7 @@ int TestIncompleteShape(int, char*[])
   LACUNA_CHECK(whole->GetDimensions()[2] == 67 && whole->GetOrigin()[0] == -30);
   LACUNA_CHECK_NEAR(whole->GetFieldData()->GetArray("CompleteVolume")->GetComponent(0, 0),
     4 * M_PI / 3 * 18 * 18 * 18 / 1000, 1e-9);
-  LACUNA_CHECK(vtkLacunaProvenance::Get(whole).size() == 1);
+  LACUNA_CHECK(lacuna::Provenance::Get(whole).size() == 1);
   vtkDataArray* data = whole->GetPointData()->GetArray("Data");
   int present = 0;
   for (vtkIdType i = 0; i < whole->GetNumberOfPoints(); ++i)

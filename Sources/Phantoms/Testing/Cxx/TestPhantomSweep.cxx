@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lacunaCheck.h"
+#include "lacunaFieldData.h"
+#include "lacunaProvenance.h"
+#include "lacunaTrackedSlices.h"
 #include "vtkCallbackCommand.h"
 #include "vtkDataArray.h"
 #include "vtkExecutive.h"
 #include "vtkFieldData.h"
 #include "vtkImageData.h"
-#include "vtkLacunaFieldData.h"
 #include "vtkLacunaPhantomSweep.h"
-#include "vtkLacunaProvenance.h"
-#include "vtkLacunaTrackedSlices.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
 #include "vtkSmartPointer.h"
@@ -59,7 +59,7 @@ void TestContract()
       sweep->SetCenter(1, -2, 3);
       sweep->Update();
       vtkImageData* output = sweep->GetOutput();
-      const vtkLacunaTrackedSlices slices(output);
+      const lacuna::TrackedSlices slices(output);
       LACUNA_CHECK_THAT(slices.GetNumberOfSlices() == 7, "slices");
       vtkFieldData* field = output->GetFieldData();
       vtkDataArray* probe = field->GetArray("ProbeToReference");
@@ -74,14 +74,14 @@ void TestContract()
       LACUNA_CHECK_THAT(frames && frames->GetNumberOfTuples() == 7 && frames->GetTuple1(6) == 6 &&
           frames->GetDataType() == VTK_INT,
         "FrameNumber");
-      LACUNA_CHECK_THAT(vtkLacunaProvenance::Get(output).size() == 1, "Provenance");
+      LACUNA_CHECK_THAT(lacuna::Provenance::Get(output).size() == 1, "Provenance");
       for (int k = 0; k < 7; ++k)
       {
-        LACUNA_CHECK_THAT(slices.GetStatus(k) == vtkLacunaTrackedSlices::Valid, "status");
+        LACUNA_CHECK_THAT(slices.GetStatus(k) == lacuna::TrackedSlices::Valid, "status");
         LACUNA_CHECK_THAT(slices.GetTimestamp(k) == k / 25.0, "time");
         const lacuna::Matrix4& pose = slices.GetImageToReference(k);
         const lacuna::Matrix4 product =
-          vtkLacunaFieldData::GetMatrix(probe, k) * vtkLacunaFieldData::GetMatrix(image, 0);
+          lacuna::FieldData::GetMatrix(probe, k) * lacuna::FieldData::GetMatrix(image, 0);
         LACUNA_CHECK_THAT(
           std::memcmp(pose.Data(), product.Data(), 16 * sizeof(double)) == 0, "chain");
         LACUNA_CHECK_THAT(pose.Determinant3() > 0, "no mirror");
@@ -112,8 +112,8 @@ void TestPoseNoise()
   clean->DeepCopy(sweep->GetOutput());
   sweep->SetPoseNoise(0.5, 1);
   sweep->Update();
-  const vtkLacunaTrackedSlices before(clean);
-  const vtkLacunaTrackedSlices after(sweep->GetOutput());
+  const lacuna::TrackedSlices before(clean);
+  const lacuna::TrackedSlices after(sweep->GetOutput());
   LACUNA_CHECK_THAT(
     std::memcmp(clean->GetScalarPointer(), sweep->GetOutput()->GetScalarPointer(), 1000) == 0,
     "pixels are imaged at the true pose");
@@ -125,7 +125,7 @@ void TestPoseNoise()
   }
   sweep->SetSeed(1);
   sweep->Update();
-  const vtkLacunaTrackedSlices other(sweep->GetOutput());
+  const lacuna::TrackedSlices other(sweep->GetOutput());
   LACUNA_CHECK_THAT(
     other.GetImageToReference(0)(0, 3) != after.GetImageToReference(0)(0, 3), "seed");
 }
@@ -153,8 +153,8 @@ void TestPieces()
   vtkImageData* part = same->GetOutput();
   LACUNA_CHECK_THAT(
     std::equal(extent, extent + 6, part->GetExtent()), "exactly the requested extent");
-  LACUNA_CHECK_THAT(vtkLacunaTrackedSlices(part).GetNumberOfSlices() == 10, "all tuples");
-  LACUNA_CHECK_THAT(vtkLacunaTrackedSlices(part).GetSliceNumber(3) == 3, "slice number");
+  LACUNA_CHECK_THAT(lacuna::TrackedSlices(part).GetNumberOfSlices() == 10, "all tuples");
+  LACUNA_CHECK_THAT(lacuna::TrackedSlices(part).GetSliceNumber(3) == 3, "slice number");
   for (int k = extent[4]; k <= extent[5]; ++k)
   {
     for (int j = extent[2]; j <= extent[3]; ++j)
@@ -201,7 +201,7 @@ void TestVolumeInput()
   sweep->SetOutputScalarType(vtkLacunaPhantomSweep::FLOAT);
   sweep->Update();
   vtkImageData* output = sweep->GetOutput();
-  const vtkLacunaTrackedSlices slices(output);
+  const lacuna::TrackedSlices slices(output);
   int inside = 0;
   int outside = 0;
   for (int k = 0; k < 9; ++k)

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lacunaCheck.h"
+#include "lacunaProvenance.h"
 #include "vtkExecutive.h"
 #include "vtkImageData.h"
-#include "vtkLacunaProvenance.h"
 #include "vtkLacunaSkullPhantom.h"
 #include "vtkNew.h"
 #include "vtkTestErrorObserver.h"
@@ -26,7 +26,7 @@ void TestTruth()
   const int* dimensions = output->GetDimensions();
   LACUNA_CHECK_THAT(dimensions[0] == 169 && dimensions[1] == 204 && dimensions[2] == 67, "size");
   LACUNA_CHECK_THAT(output->GetScalarType() == VTK_SHORT && output->GetSpacing()[2] == 2.3, "type");
-  LACUNA_CHECK_THAT(vtkLacunaProvenance::Get(output).size() == 1, "Provenance");
+  LACUNA_CHECK_THAT(lacuna::Provenance::Get(output).size() == 1, "Provenance");
   int bone = 0;
   int missing = 0;
   for (int k = 0; k < dimensions[2]; ++k)
