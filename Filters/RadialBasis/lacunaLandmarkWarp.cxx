@@ -80,7 +80,7 @@ std::vector<std::array<double, 3>> lacuna::VoxelSpace::GetPoints(vtkDataSet* poi
 
 //------------------------------------------------------------------------------
 template <int Dimension>
-lacuna::LandmarkWarp<Dimension>::lacuna::LandmarkWarp(lacuna::AlgorithmExecution& execution,
+lacuna::LandmarkWarp<Dimension>::LandmarkWarp(lacuna::AlgorithmExecution& execution,
   const lacuna::VoxelSpace& space, const Points& landmarks, const Points& targets,
   lacuna::RadialBasisOptions options, double accuracy)
   : Space(space)
