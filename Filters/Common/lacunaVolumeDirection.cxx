@@ -14,6 +14,7 @@
 #include <cmath>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 namespace lacuna::VolumeDirection
 {
@@ -25,8 +26,13 @@ constexpr double Tolerance = 1e-5; // files with six digits pass, 0.003 mm at 30
 //------------------------------------------------------------------------------
 void Record(vtkImageData* volume)
 {
-  const double* elements = volume->GetDirectionMatrix()->GetData();
-  lacuna::FieldData::Set(volume, ArrayName, { elements, elements + 9 }, 9);
+  const double* matrix = volume->GetDirectionMatrix()->GetData();
+  std::vector<double> elements(matrix, matrix + 9);
+  for (double& element : elements)
+  {
+    element += 0.0; // no -0: VTK keeps the sign of a zero that was there before
+  }
+  lacuna::FieldData::Set(volume, ArrayName, elements, 9);
 }
 
 //------------------------------------------------------------------------------

@@ -25,7 +25,6 @@ def added(window, name):
 
 
 def ct_to_iges(window):
-    from paraview import servermanager
     from paraview.simple import BSplineIsoRayCaster, GetActiveViewOrCreate, Render, SetActiveSource, Show, SkullPhantom
     view = GetActiveViewOrCreate("RenderView")
     skull = SkullPhantom(Spacing=[2, 2, 3])
@@ -40,8 +39,8 @@ def ct_to_iges(window):
         assert math.dist(found, expected) < 1e-12, (name, found, expected)
     assert list(caster.IsoValues) == [500] and list(caster.ImageSize) == [0, 0] and caster.Projection == "Parallel"
     filled = added(window, "LacunaRBFHoleFiller")
-    mask = servermanager.Fetch(filled).GetPointData().GetArray("FilledMask")
-    assert mask.GetRange() == (0, 1), mask.GetRange()
+    mask = filled.PointData["FilledMask"].GetRange()  # that of the array is not, once ParaView 5.13 has colours for it
+    assert mask == (0, 1), mask
 
     given = list(caster.ViewDirection)
     view.CameraPosition = [-300, 100, 50]

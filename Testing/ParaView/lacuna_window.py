@@ -69,9 +69,14 @@ def main(test, expected=""):
     if IS_INSIDE:
         inside(test)
     said = run(test.__code__.co_filename)  # paraview's scripts have no __file__
-    warnings = [line for line in said.splitlines() if "WARN|" in line and not (expected and expected in line)]
-    assert not warnings, warnings
+    check_warnings(said, expected)
     print("ok")
+
+
+def check_warnings(said, expected=""):
+    """No warning without the words expected, but for what Mesa's compiler says of the shaders of VTK 9.6."""
+    warnings = [line for line in said.splitlines() if "WARN|" in line and not (expected and expected in line) and "SHADER_COMPILER" not in line]
+    assert not warnings, warnings
 
 
 def inside(test):

@@ -408,7 +408,8 @@ def show_marks(identity, region=0):
         display.ColorArrayName = [None, ""]
         display.AmbientColor = display.DiffuseColor = list(MARKED)
         towards = -_matrix_of(filled)[:3, 2]
-        display.Position = list(towards / np.linalg.norm(towards))  # 1 mm before bone that it covers
+        place = "Translation" if display.SMProxy.GetProperty("Translation") else "Position"  # since ParaView 5.13; before
+        setattr(display, place, list(towards / np.linalg.norm(towards)))  # 1 mm before bone that it covers
         display.Pickable = 0
         pv.Render(view)
     except Exception as error:  # pylint: disable=broad-exception-caught
