@@ -8,6 +8,7 @@
 #include "lacunaPrintableText.h"
 #include "lacunaProvenance.h"
 #include "vtkAlgorithmOutput.h"
+#include "vtkCellData.h"
 #include "vtkCommand.h"
 #include "vtkCompositeDataSet.h"
 #include "vtkDataArray.h"
@@ -21,6 +22,7 @@
 #include "vtkInformationVector.h"
 #include "vtkMatrix3x3.h"
 #include "vtkNew.h"
+#include "vtkPointData.h"
 #include "vtkPointSet.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkTable.h"
@@ -175,6 +177,20 @@ void ForEachInput(vtkAlgorithm* algorithm, const Callable& body)
       body(port, i, algorithm->GetInputInformation(port, i));
     }
   }
+}
+
+/// The array that Extract Selection adds to its output; null: it is none.
+const char* GetExtractedName(vtkDataObject* data)
+{
+  auto* set = vtkDataSet::SafeDownCast(data);
+  for (const char* name : { "vtkOriginalPointIds", "vtkOriginalCellIds", "vtkInsidedness" })
+  {
+    if (set && (set->GetPointData()->HasArray(name) || set->GetCellData()->HasArray(name)))
+    {
+      return name;
+    }
+  }
+  return nullptr;
 }
 
 /// Three numbers of its size, and a hash of where it is.
@@ -543,11 +559,12 @@ std::string Algorithm::CompareInputs(const lacuna::ControllerRanks& ranks) const
   {
     return {};
   }
-  bool isSame = true;
+  std::string error;
   ForEachInput(this->Self,
     [&](int port, int i, vtkInformation*)
     {
-      const auto own = GetFingerprint(this->Self->GetInputDataObject(port, i));
+      vtkDataObject* data = this->Self->GetInputDataObject(port, i);
+      const auto own = GetFingerprint(data);
       auto first = own;
       if (ranks.GetRank() > 0)
       {
@@ -557,14 +574,21 @@ std::string Algorithm::CompareInputs(const lacuna::ControllerRanks& ranks) const
       // what only the first rank makes is nowhere else
       const bool isElsewhere =
         this->Sharing == Share::FirstRank && own[0] == 0 && own[1] == 0 && own[2] == 0;
-      isSame = isSame && (own == first || isElsewhere);
+      if (own != first && !isElsewhere)
+      {
+        error = "the inputs are not the same on all ranks: a filter before this one gives each "
+                "rank a part, or all to the first, or the nodes have other files; save the data "
+                "and read them again, or run one rank";
+      }
+      else if (const char* name = GetExtractedName(data))
+      {
+        error = "input " + std::to_string(port) + " was extracted by a selection (array " + name +
+          "): numbers of points that are picked count in each rank's own part of what was shown, "
+          "and others would be taken; run one rank, or select by values and remove the array by "
+          "Pass Arrays";
+      }
     });
-  return isSame
-    ? std::string()
-    : "the inputs are not the same on all ranks: a filter before this one gives each rank a part, "
-      "or "
-      "all to the first, or the nodes have other files; save the data and read them again, or run "
-      "one rank";
+  return error;
 }
 
 //------------------------------------------------------------------------------

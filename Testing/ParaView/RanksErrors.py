@@ -213,6 +213,12 @@ def selected(rank, pv, depth):
         text = update(made)
         print(rank, repr(text), flush=True)
         assert said in text if said else not text, (said, text)
+    # behind Extract Selection, also where only the first rank has some of them and works
+    for ids in [each for k in range(300) for each in (k % 2, k)], [each for k in range(300) for each in (0, k)]:
+        extracted = pv.ExtractSelection(Input=surface, Selection=pv.IDSelectionSource(IDs=ids, FieldType="POINT"))
+        for made in pv.RBFHoleFiller(Input=depth, Surface=extracted), pv.RBFSurface(Input=extracted):
+            text = error_of(made)
+            assert "not the same on all ranks" in text or "was extracted by a selection" in text, (made.GetXMLLabel(), text)
 
 
 def transparent(rank):
