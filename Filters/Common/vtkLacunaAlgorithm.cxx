@@ -183,7 +183,7 @@ void ForEachInput(vtkAlgorithm* algorithm, const Callable& body)
 const char* GetExtractedName(vtkDataObject* data)
 {
   auto* set = vtkDataSet::SafeDownCast(data);
-  for (const char* name : { "vtkOriginalPointIds", "vtkOriginalCellIds", "vtkInsidedness" })
+  for (const char* name : { "vtkOriginalPointIds", "vtkInsidedness" })
   {
     if (set && (set->GetPointData()->HasArray(name) || set->GetCellData()->HasArray(name)))
     {
@@ -559,7 +559,8 @@ std::string Algorithm::CompareInputs(const lacuna::ControllerRanks& ranks) const
   {
     return {};
   }
-  std::string error;
+  std::string differs;
+  std::string extracted;
   ForEachInput(this->Self,
     [&](int port, int i, vtkInformation*)
     {
@@ -576,19 +577,21 @@ std::string Algorithm::CompareInputs(const lacuna::ControllerRanks& ranks) const
         this->Sharing == Share::FirstRank && own[0] == 0 && own[1] == 0 && own[2] == 0;
       if (own != first && !isElsewhere)
       {
-        error = "the inputs are not the same on all ranks: a filter before this one gives each "
-                "rank a part, or all to the first, or the nodes have other files; save the data "
-                "and read them again, or run one rank";
+        differs = "the inputs are not the same on all ranks: a filter before this one gives each "
+                  "rank a part, or all to the first, or the nodes have other files; save the data "
+                  "and read them again, or run one rank";
       }
-      else if (const char* name = GetExtractedName(data))
+      if (const char* name = GetExtractedName(data))
       {
-        error = "input " + std::to_string(port) + " was extracted by a selection (array " + name +
+        extracted = "input " + std::to_string(port) + " was extracted by a selection (array " +
+          name +
           "): numbers of points that are picked count in each rank's own part of what was shown, "
           "and others would be taken; run one rank, or select by values and remove the array by "
           "Pass Arrays";
       }
     });
-  return error;
+  differs = ranks.GetFirstText(differs);
+  return differs.empty() ? extracted : differs;
 }
 
 //------------------------------------------------------------------------------
