@@ -1,0 +1,205 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: BSD-3-Clause
+# Begins a filter of images: class, first test, proxy, icon and place in the menu. It builds and runs at once,
+# and copies its input times Factor. Its first test fails until it is written.
+#   Testing/Tools/new-filter.sh NAME MODULE      for instance EdgeStrength Speckle (a folder of Filters)
+# Then "A new filter" in Documentation/DeveloperGuide/architecture.md.
+set -euo pipefail
+cd "$(dirname "$0")/../.."
+name=${1:-} module=${2:-}
+if ! [[ $name =~ ^[A-Z][A-Za-z0-9]+$ ]] || [ ! -f "Filters/$module/vtk.module" ]; then
+  sed -n '3,6s/^# \?//p' "$0" >&2
+  echo "modules: $(cd Filters && ls -d */ | tr -d / | xargs)" >&2
+  exit 2
+fi
+class=vtkLacuna$name
+folder=Filters/$module
+if compgen -G "*/*/$class.h" >/dev/null; then echo "$0: there is a $class" >&2; exit 2; fi
+label=$(sed -E 's/([a-z0-9])([A-Z])/\1 \2/g' <<<"$name")
+export=VTKLACUNAFILTERS${module^^}_EXPORT
+
+cat >"$folder/$class.h" <<END
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @class $class
+ * @brief one line: what a user gets of it
+ *
+ * Input: vtkImageData with active scalars. Output: what it is, its arrays with units, and the source of the method.
+ */
+#ifndef ${class}_h
+#define ${class}_h
+
+#include "vtkImageAlgorithm.h"
+#include "vtkLacunaAlgorithm.h"
+#include "vtkLacunaFilters${module}Module.h" // for export macro
+
+class $export $class : public vtkLacunaAlgorithmOf(vtkImageAlgorithm)
+{
+public:
+  static $class* New();
+  vtkTypeMacro($class, vtkImageAlgorithm);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  ///@{
+  /// What values are multiplied by: a finite number. Default: 1.
+  vtkSetMacro(Factor, double);
+  vtkGetMacro(Factor, double);
+  ///@}
+
+protected:
+  $class();
+  ~$class() override = default;
+
+  void Make(const lacuna::Ports& ports, lacuna::AlgorithmExecution& execution) override;
+  std::string Parameters(int port) const override;
+
+private:
+  $class(const $class&) = delete;
+  void operator=(const $class&) = delete;
+
+  double Factor = 1;
+};
+#endif
+END
+
+cat >"$folder/$class.cxx" <<END
+// SPDX-License-Identifier: BSD-3-Clause
+#include "$class.h"
+
+#include "lacunaArrays.h"
+#include "lacunaParameterText.h"
+#include "lacunaVolumeDirection.h"
+#include "vtkDataArray.h"
+#include "vtkImageData.h"
+#include "vtkObjectFactory.h"
+#include "vtkPointData.h"
+
+#include <cmath>
+#include <stdexcept>
+
+vtkStandardNewMacro($class);
+
+//------------------------------------------------------------------------------
+$class::$class()
+{
+  this->Sharing = lacuna::Share::EachRank;
+}
+
+//------------------------------------------------------------------------------
+void $class::Make(const lacuna::Ports& ports, lacuna::AlgorithmExecution& execution)
+{
+  auto* input = ports.GetInput<vtkImageData>();
+  auto* output = ports.GetOutput<vtkImageData>();
+  lacuna::VolumeDirection::Check(input);
+  vtkDataArray* from = input->GetPointData()->GetScalars();
+  if (!from)
+  {
+    throw std::runtime_error("input 0 has no active scalars: choose an array");
+  }
+  if (!std::isfinite(this->Factor))
+  {
+    throw std::runtime_error("Factor is " + lacuna::FormatValue(this->Factor) + "; give a finite number");
+  }
+  output->CopyStructure(input);
+  vtkDataArray* to = lacuna::Arrays::AddScalars(output, from->GetDataType(), from->GetName());
+  for (vtkIdType i = 0; i < to->GetNumberOfTuples(); ++i)
+  {
+    to->SetTuple1(i, this->Factor * from->GetComponent(i, 0));
+  }
+  execution.Report(1);
+}
+
+//------------------------------------------------------------------------------
+std::string $class::Parameters(int) const
+{
+  return lacuna::ParameterText().Add("Factor", this->Factor).Get();
+}
+
+//------------------------------------------------------------------------------
+void $class::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "Factor: " << this->Factor << "\n";
+}
+END
+
+cat >"$folder/Testing/Cxx/Test$name.cxx" <<END
+// SPDX-License-Identifier: BSD-3-Clause
+#include "$class.h"
+#include "vtkImageData.h"
+#include "vtkNew.h"
+
+#include <cstdlib>
+#include <iostream>
+
+int Test$name(int, char*[])
+{
+  vtkNew<vtkImageData> image;
+  image->SetDimensions(4, 3, 2);
+  image->AllocateScalars(VTK_DOUBLE, 1);
+  image->SetScalarComponentFromDouble(1, 2, 1, 0, 5);
+  vtkNew<$class> filter;
+  filter->SetInputData(image);
+  filter->SetFactor(2);
+  filter->Update();
+  std::cerr << "write this test: values that are known, not those that the filter makes ("
+            << filter->GetOutput()->GetScalarComponentAsDouble(1, 2, 1, 0) << ")\n";
+  return EXIT_FAILURE;
+}
+END
+
+cat >"Plugins/Lacuna/Filters/$name.xml" <<END
+<!-- SPDX-License-Identifier: BSD-3-Clause -->
+<ServerManagerConfiguration>
+  <ProxyGroup name="filters">
+    <SourceProxy name="Lacuna$name" class="$class" label="$label">
+      <Documentation short_help="One line: what a user gets of it."
+                     long_help="Two sentences: what it does, and when to use it.">
+What it does, with **Factor** and its unit.
+      </Documentation>
+
+      <InputProperty name="Input" command="SetInputConnection">
+        <ProxyGroupDomain name="groups">
+          <Group name="sources"/>
+          <Group name="filters"/>
+        </ProxyGroupDomain>
+        <DataTypeDomain name="input_type" composite_data_supported="0">
+          <DataType value="vtkImageData"/>
+        </DataTypeDomain>
+        <Documentation>An image or a volume.</Documentation>
+      </InputProperty>
+
+      <DoubleVectorProperty name="Factor" command="SetFactor" number_of_elements="1" default_values="1">
+        <Documentation>What values are multiplied by.</Documentation>
+      </DoubleVectorProperty>
+
+      <Hints>
+        <ShowInMenu icon=":/Lacuna/Icons/$name.svg"/>
+      </Hints>
+    </SourceProxy>
+  </ProxyGroup>
+</ServerManagerConfiguration>
+END
+
+cat >"Plugins/Lacuna/Resources/Icons/$name.svg" <<END
+<svg xmlns="http://www.w3.org/2000/svg" width="16" height="16" viewBox="0 0 16 16">
+<!-- SPDX-License-Identifier: BSD-3-Clause -->
+<g fill="none" stroke="#2f7fc4" stroke-width="1.5" stroke-linecap="round" stroke-linejoin="round">
+<path d="M2 2 h12 v12 h-12 z" fill="#accce7"/>
+</g>
+</svg>
+END
+
+sed -i "0,/^  CLASSES\$/s//  CLASSES\n    $class/" "$folder/CMakeLists.txt"
+sed -i "0,/^  NO_DATA.*/s//&\n  Test$name.cxx/" "$folder/Testing/Cxx/CMakeLists.txt"
+sed -i "s|^lacuna_add_proxies(Filters$module \+|&Filters/$name.xml |" Plugins/Lacuna/CMakeLists.txt
+sed -i "0,/^    <file>Icons/s//    <file>Icons\/$name.svg<\/file>\n&/" Plugins/Lacuna/Resources/lacuna.qrc
+last=$(grep -n '^    </Category>' Plugins/Lacuna/LacunaMenus.xml | sed -n '2s/:.*//p') # that of filters
+sed -i "${last}i\\      <Proxy group=\"filters\" name=\"Lacuna$name\" icon=\":/Lacuna/Icons/$name.svg\"/>" Plugins/Lacuna/LacunaMenus.xml
+if command -v clang-format-14 >/dev/null; then
+  clang-format-14 -i "$folder/$class".{h,cxx} "$folder/Testing/Cxx/Test$name.cxx"
+fi
+
+git status --short
+echo "next: cmake --build build/release, then ctest --test-dir build/release -R Test$name (it fails until it is written);
+what else a filter has: ctest -R 'ProxyConventions|WindowMenus', and \"A new filter\" in Documentation/DeveloperGuide/architecture.md"
