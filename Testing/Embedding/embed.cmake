@@ -33,7 +33,7 @@ get_filename_component(project "${SOURCE}/../.." ABSOLUTE)
 file(GLOB_RECURSE texts "${WORK}/moved/*.cmake" "${WORK}/moved/*.py" "${WORK}/moved/*.xml")
 foreach (text IN LISTS texts)
   file(STRINGS "${text}" fixed
-    REGEX "(^|-[IL]|[^-A-Za-z0-9._}])(${WORK}/installed|${BUILD}|${project})([^-A-Za-z0-9._]|$)")
+    REGEX "(^|-[A-Z]|-isystem|[^-A-Za-z0-9._}])(${WORK}/installed|${BUILD}|${project})([^-A-Za-z0-9._]|$)")
   if (fixed)
     message(FATAL_ERROR "${text} is for one place only: ${fixed}")
   endif ()

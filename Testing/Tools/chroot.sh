@@ -123,11 +123,13 @@ case $what in
       xvfb-run -a -s -noreset ctest --preset vtk --no-tests=error -LE soak"
     ;;
   make)
-    if [ -d "$source/build/site/html" ]; then
-      mkdir -p "$folder/lacuna/build/site"
-      rm -rf "$folder/lacuna/build/site/html"
-      cp -r "$source/build/site/html" "$folder/lacuna/build/site/html"
+    if [ ! -d "$source/build/site/html" ]; then
+      echo "$0: lacuna-doc needs the site: run Documentation/build-site.sh first" >&2
+      exit 2
     fi
+    mkdir -p "$folder/lacuna/build/site"
+    rm -rf "$folder/lacuna/build/site/html"
+    cp -r "$source/build/site/html" "$folder/lacuna/build/site/html"
     inside "cd /lacuna && Testing/Tools/archive.sh && Testing/Tools/package.sh --no-site --in build/release"
     rm "$folder/lacuna/build/release/CMakeCache.txt" # the next run configures it anew
     packages=$source/build/packages/$suite

@@ -47,6 +47,15 @@ int TestVolumeDirection(int, char*[])
   lacuna::VolumeDirection::Remove(volume);
   lacuna::VolumeDirection::Check(volume);
 
+  // VTK keeps the sign of a zero that was there before; a record has none
+  volume->SetDirectionMatrix(-1, -0.0, 0, 0, 1, 0, 0, -0.0, -1);
+  vtkLacunaVolumeDirection::Record(volume);
+  record = volume->GetFieldData()->GetArray("DirectionMatrix");
+  for (int i = 0; i < 9; ++i)
+  {
+    LACUNA_CHECK(std::signbit(record->GetComponent(0, i)) == (i == 0 || i == 8));
+  }
+
   // what is made of a volume and lies elsewhere does not keep it
   lacuna::VolumeDirection::Record(volume);
   vtkNew<vtkImageData> map;
