@@ -49,7 +49,7 @@ int TestVolumeDirection(int, char*[])
 
   // VTK keeps the sign of a zero that was there before; a record has none
   volume->SetDirectionMatrix(-1, -0.0, 0, 0, 1, 0, 0, -0.0, -1);
-  vtkLacunaVolumeDirection::Record(volume);
+  lacuna::VolumeDirection::Record(volume);
   record = volume->GetFieldData()->GetArray("DirectionMatrix");
   for (int i = 0; i < 9; ++i)
   {
