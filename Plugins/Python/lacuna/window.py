@@ -408,7 +408,7 @@ def show_marks(identity, region=0):
         display.ColorArrayName = [None, ""]
         display.AmbientColor = display.DiffuseColor = list(MARKED)
         towards = -_matrix_of(filled)[:3, 2]
-        place = "Translation" if display.SMProxy.GetProperty("Translation") else "Position"  # since ParaView 5.13; before
+        place = "Translation" if display.SMProxy.GetProperty("Translation") else "Position"  # the names since ParaView 5.13, and before
         setattr(display, place, list(towards / np.linalg.norm(towards)))  # 1 mm before bone that it covers
         display.Pickable = 0
         pv.Render(view)
