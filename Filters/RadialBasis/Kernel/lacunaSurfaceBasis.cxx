@@ -126,8 +126,11 @@ void SurfaceBasis::Reflect(char side, char transposed, Matrix& matrix) const
   const int size = static_cast<int>(this->Reflectors.GetRows());
   std::vector<double> work(64 * static_cast<std::size_t>(std::max(rows, columns)));
   const int length = static_cast<int>(work.size());
+  // A copy, because LAPACK puts 1 into the diagonal meanwhile: threads would disturb each other.
+  const double* first = this->Reflectors.Column(0);
+  const std::vector<double> reflectors(first, first + this->Reflectors.GetRows() * Terms);
   int info = 0;
-  dormqr_(&side, &transposed, &rows, &columns, &terms, this->Reflectors.Column(0), &size,
+  dormqr_(&side, &transposed, &rows, &columns, &terms, reflectors.data(), &size,
     this->ReflectorScales.data(), matrix.Column(0), &rows, work.data(), &length, &info, 1, 1);
 }
 

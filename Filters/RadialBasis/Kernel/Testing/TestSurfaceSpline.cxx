@@ -3,15 +3,20 @@
 
 #include "lacunaExecution.h"
 #include "lacunaOutlines.h"
+#include "lacunaSurfaceBasis.h"
 #include "lacunaTestShapes.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
+#include <chrono>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <random>
 #include <stdexcept>
+#include <thread>
 #include <vector>
 
 namespace
@@ -215,4 +220,48 @@ TEST(SurfaceSpline, RefusesBadData)
   options = {};
   options.Kernel = lacuna::RadialKernel::ThinPlate;
   EXPECT_THROW(Fit(good, options), std::invalid_argument);
+}
+
+// LAPACK writes into the reflectors of a basis while it applies them.
+TEST(SurfaceSpline, ThreadsThatShareABasisMakeTheSameRows)
+{
+  using Basis = lacuna::SurfaceBasis;
+  using Clock = std::chrono::steady_clock;
+  const TestShape shape(TestShape::Kumara);
+  const std::vector<Vec3> nodes = shape.SampleNoisy(40, 0, false, 5).Points;
+  const std::vector<Vec3> points = shape.SampleNoisy(1000, 0, false, 6).Points;
+  lacuna::ThreadExecution execution(1);
+  const auto make = [&](const Basis& basis)
+  {
+    const Basis::Matrix rows = basis.MakeRows(points, true);
+    return std::vector<double>(rows.Column(0), rows.Column(0) + rows.GetRows() * rows.GetColumns());
+  };
+  const Clock::time_point start = Clock::now();
+  const std::vector<double> expected = make({ execution, nodes, lacuna::RadialKernel::Cubic });
+  const Clock::duration once = Clock::now() - start;
+  constexpr int attempts = 300;
+  int wrong = 0;
+  for (int attempt = 0; attempt < attempts; ++attempt)
+  {
+    // a new one each time: only the first of its calls could be disturbed
+    const Basis basis(execution, nodes, lacuna::RadialKernel::Cubic);
+    std::atomic<int> ready{ 0 };
+    std::vector<std::vector<double>> found(2);
+    const auto run = [&](std::vector<double>& rows, Clock::duration delay)
+    {
+      ++ready;
+      while (ready < 2)
+      {
+      }
+      for (const Clock::time_point from = Clock::now(); Clock::now() - from < delay;)
+      {
+      }
+      rows = make(basis);
+    };
+    std::thread other(run, std::ref(found[0]), Clock::duration(0));
+    run(found[1], once / 2 * attempt / attempts);
+    other.join();
+    wrong += static_cast<int>(found[0] != expected) + static_cast<int>(found[1] != expected);
+  }
+  EXPECT_EQ(wrong, 0);
 }
