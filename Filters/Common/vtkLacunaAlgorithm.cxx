@@ -666,6 +666,15 @@ void Algorithm::CheckRequest(const Ports& ports) const
     throw Aborted();
   }
   this->CheckInputs(ports);
+  this->CheckProperties();
+}
+
+//------------------------------------------------------------------------------
+std::string Algorithm::Parameters(int) const
+{
+  lacuna::Properties properties;
+  this->Describe(properties);
+  return properties.GetText();
 }
 
 //------------------------------------------------------------------------------

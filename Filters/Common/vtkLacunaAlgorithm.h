@@ -3,15 +3,17 @@
 /// The base of Lacuna's sources, readers and filters.
 ///
 /// An algorithm says in its constructor how ranks share its work (Share), and implements Announce (what comes out),
-/// Make (the work) and Parameters (for the provenance). The base does the rest: it asks for the input, refuses what is
-/// not sound or does not fit into the memory, reports progress, stops, empties the outputs after an error, brings errors
-/// to all ranks, crops images, and records the provenance with the marks of laterality and coordinates. VTK calls
-/// RequestData, which calls MakeOutputs, which calls Make.
+/// Make (the work) and Describe (its properties, what each may be). The base does the rest: it refuses values that no
+/// property may have, asks for the input, refuses what is not sound or does not fit into the memory, reports progress,
+/// stops, empties the outputs after an error, brings errors to all ranks, crops images, prints the properties, and
+/// records the provenance with the marks of laterality and coordinates. VTK calls RequestData, which calls MakeOutputs,
+/// which calls Make.
 #ifndef vtkLacunaAlgorithm_h
 #define vtkLacunaAlgorithm_h
 
 #include "lacunaAlgorithmExecution.h"
 #include "lacunaControllerRanks.h"
+#include "lacunaProperties.h"
 #include "lacunaVersionCompat.h" // for stops
 #include "vtkAlgorithm.h"
 #include "vtkLacunaFiltersCommonModule.h" // for export macro
@@ -91,7 +93,8 @@ private:
 };
 
 /// What vtkLacunaAlgorithm does, whatever the class of VTK. All errors are exceptions with a sentence for the user.
-class VTKLACUNAFILTERSCOMMON_EXPORT Algorithm
+/// Make is called only when all properties have values that they may have (Describe).
+class VTKLACUNAFILTERSCOMMON_EXPORT Algorithm : public Described
 {
 public:
   /// A function that says whether all ranks execute an algorithm when something has changed. Only these can agree on
@@ -127,9 +130,9 @@ protected:
   /// empty, without field data.
   virtual void MakeNothing(const Ports& ports);
 
-  /// "Name=value Name=value", for the provenance of an output. Called after Make. Without any and without inputs
-  /// nothing is recorded.
-  virtual std::string Parameters(int port) const = 0;
+  /// "Name=value Name=value", for the provenance of an output. Called after Make. By default what Describe lists.
+  /// Without any and without inputs nothing is recorded.
+  virtual std::string Parameters(int port) const;
 
   /// The inputs that the outputs are made of, for the provenance; the outputs get the marks of the first one. By
   /// default all that have points or rows.
@@ -193,6 +196,12 @@ class vtkLacunaAlgorithm
   , public lacuna::Algorithm
 {
 public:
+  void PrintSelf(ostream& os, vtkIndent indent) override
+  {
+    this->Super::PrintSelf(os, indent);
+    this->PrintProperties(os, indent);
+  }
+
   /// A stop, and that it is over, is no change when there are several ranks: the others do not know of it.
   void SetAbortExecute(vtkTypeBool stop) override
   {

@@ -87,6 +87,7 @@ void vtkLacunaWriter::WriteData()
       throw std::runtime_error("no FileName is given");
     }
     this->RequireInput();
+    this->CheckProperties();
     this->WriteFile();
     code = vtkErrorCode::NoError;
   }
@@ -113,4 +114,14 @@ void vtkLacunaWriter::WriteData()
     vtkErrorMacro(<< lacuna::ToPrintable(error));
   }
   this->SetErrorCode(code);
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaWriter::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "FileName: " << (this->FileName ? this->FileName : "(none)") << "\n";
+  this->PrintProperties(os, indent);
+  os << indent << "Piece: " << this->Piece << " of " << this->NumberOfPieces << "\n";
+  os << indent << "FileSize: " << this->FileSize << "\n";
 }

@@ -5,6 +5,7 @@
 #ifndef vtkLacunaWriter_h
 #define vtkLacunaWriter_h
 
+#include "lacunaProperties.h"
 #include "vtkLacunaFiltersCommonModule.h" // for export macro
 #include "vtkWriter.h"
 
@@ -13,10 +14,14 @@
 #ifdef __VTK_WRAP__ // wrappers know classes of VTK only
 #define vtkLacunaWriter vtkWriter
 #else
-class VTKLACUNAFILTERSCOMMON_EXPORT vtkLacunaWriter : public vtkWriter
+class VTKLACUNAFILTERSCOMMON_EXPORT vtkLacunaWriter
+  : public vtkWriter
+  , public lacuna::Described
 {
 public:
   vtkAbstractTypeMacro(vtkLacunaWriter, vtkWriter);
+  /// FileName, what Describe lists, and FileSize.
+  void PrintSelf(ostream& os, vtkIndent indent) override;
 
   /// 1 when a file was written, else 0; then GetErrorCode() says why. Nothing written is always an error: VTK does
   /// not come to WriteData when a filter upstream has nothing.

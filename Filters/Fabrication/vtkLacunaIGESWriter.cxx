@@ -124,7 +124,7 @@ private:
 
 //------------------------------------------------------------------------------
 // Lines for people: what there is, where it comes from, and how it was made.
-void Describe(const lacuna::CADContent& content, std::vector<std::string>& text)
+void AddDescription(const lacuna::CADContent& content, std::vector<std::string>& text)
 {
   text.insert(text.end(), content.Description.begin(), content.Description.end());
   text.emplace_back(Levels);
@@ -198,7 +198,7 @@ void vtkLacunaIGESWriter::WriteFile()
   header.Date = vtksys::SystemTools::GetCurrentDateTime("%Y%m%d.%H%M%S");
   header.MinimumResolution = std::clamp(this->Tolerance, 1e-6, 1e-3);
   header.Start.push_back(version + " IGES Writer. Unit mm. No medical device.");
-  Describe(content, header.Start);
+  AddDescription(content, header.Start);
   lacuna::ParameterText parameters;
   parameters.Add("Tolerance", this->Tolerance)
     .Add("DefectOutline", this->DefectOutline)

@@ -26,6 +26,7 @@
 #include "vtkUnsignedCharArray.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <stdexcept>
 #include <string>
@@ -36,6 +37,7 @@ vtkStandardNewMacro(vtkLacunaPressOrientation);
 namespace
 {
 constexpr const char* PlaneNormalName = "PlaneNormal";
+constexpr std::array<const char*, 2> PlaneMethodNames{ "Fit", "LeastSquares" };
 constexpr double LargestInclination = 10; // degrees, of the fit's plane without a warning
 // Degrees from the view to the one that faces the defect: below, there is no better one; above, what
 // is measured along the rim tells too little.
@@ -47,15 +49,6 @@ constexpr double SolidSpacing = 0.75; // mm between samples of a solid's face
 constexpr double SteepestWall =
   60; // degrees: a sheet that is drawn over more has less than half of its thickness
 constexpr double LargestDeviation = 0.05; // mm, of a solid's face, without a warning
-
-void CheckChoice(const char* name, int value, int count, const char* choices)
-{
-  if (value < 0 || value >= count)
-  {
-    throw std::runtime_error(
-      std::string(name) + " is " + std::to_string(value) + "; it must be " + choices);
-  }
-}
 
 std::vector<double> ToVector(const lacuna::Vec3& v)
 {
@@ -69,7 +62,7 @@ class vtkLacunaPressOrientation::Plan
 {
 public:
   Plan(lacuna::Execution& execution, vtkLacunaPressOrientation* self, vtkDataObject* input)
-    : Options(GetOptions(self))
+    : Options(self->GetOptions())
     , Part(MakePart(execution, input, this->Options))
     , Surface(execution, this->Part.Size, this->Part.Depths, this->Part.Spacing)
   {
@@ -212,24 +205,6 @@ private:
       lacuna::FormatNumber(std::ceil(this->Options.PlateMargin)) +
       (this->OwnPlane ? "; set PlaneMethod to LeastSquares" : "") + "; if that does not do, " +
       smaller;
-  }
-
-  static lacuna::PressOptions GetOptions(vtkLacunaPressOrientation* self)
-  {
-    CheckChoice("PlaneMethod", self->PlaneMethod, 2, "0 (Fit) or 1 (LeastSquares)");
-    CheckChoice("Mould", self->Mould, 2, "0 (Female) or 1 (Male)");
-    CheckChoice("Seating", self->Seating, 2, "0 (Onlay) or 1 (Inlay)");
-    CheckChoice("ConvexSide", self->ConvexSide, 3, "0 (Automatic), 1 (Outward) or 2 (Inward)");
-    lacuna::PressOptions options;
-    options.Mould = static_cast<lacuna::PressMould>(self->Mould);
-    options.Seating = static_cast<lacuna::PlateSeating>(self->Seating);
-    options.Convex = static_cast<lacuna::ConvexSide>(self->ConvexSide);
-    options.PlateThickness = self->PlateThickness;
-    options.PlateMargin = self->PlateMargin;
-    options.FlangeWidth = self->FlangeWidth;
-    options.BlockSize = { self->BlockSize[0], self->BlockSize[1], self->BlockSize[2] };
-    options.Spacing = self->OutputSpacing;
-    return options;
   }
 };
 
@@ -381,19 +356,25 @@ void vtkLacunaPressOrientation::Make(
 }
 
 //------------------------------------------------------------------------------
-std::string vtkLacunaPressOrientation::Parameters(int) const
+lacuna::PressOptions vtkLacunaPressOrientation::GetOptions() const
 {
-  return lacuna::ParameterText()
-    .Add("PlaneMethod", this->PlaneMethod)
-    .Add("Mould", this->Mould)
-    .Add("Seating", this->Seating)
-    .Add("PlateThickness", this->PlateThickness)
-    .Add("PlateMargin", this->PlateMargin)
-    .Add("FlangeWidth", this->FlangeWidth)
-    .Add("BlockSize", this->BlockSize)
-    .Add("OutputSpacing", this->OutputSpacing)
-    .Add("ConvexSide", this->ConvexSide)
-    .Get();
+  lacuna::PressOptions options;
+  options.Mould = static_cast<lacuna::PressMould>(this->Mould);
+  options.Seating = static_cast<lacuna::PlateSeating>(this->Seating);
+  options.Convex = static_cast<lacuna::ConvexSide>(this->ConvexSide);
+  options.PlateThickness = this->PlateThickness;
+  options.PlateMargin = this->PlateMargin;
+  options.FlangeWidth = this->FlangeWidth;
+  options.BlockSize = { this->BlockSize[0], this->BlockSize[1], this->BlockSize[2] };
+  options.Spacing = this->OutputSpacing;
+  return options;
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaPressOrientation::Describe(lacuna::Properties& properties) const
+{
+  properties.Add("PlaneMethod", this->PlaneMethod, PlaneMethodNames);
+  this->GetOptions().Describe(properties);
 }
 
 //------------------------------------------------------------------------------
@@ -417,20 +398,4 @@ void vtkLacunaPressOrientation::WarnOfWalls(
                     << " mm thin to about " << lacuna::FormatNumber(std::round(100 * left) / 100)
                     << " mm. Take a wider FlangeWidth, press in steps, or make the plate in parts");
   }
-}
-
-//------------------------------------------------------------------------------
-void vtkLacunaPressOrientation::PrintSelf(ostream& os, vtkIndent indent)
-{
-  this->Superclass::PrintSelf(os, indent);
-  os << indent << "PlaneMethod: " << this->PlaneMethod << "\n";
-  os << indent << "Mould: " << this->Mould << "\n";
-  os << indent << "Seating: " << this->Seating << "\n";
-  os << indent << "PlateThickness: " << this->PlateThickness << "\n";
-  os << indent << "PlateMargin: " << this->PlateMargin << "\n";
-  os << indent << "FlangeWidth: " << this->FlangeWidth << "\n";
-  os << indent << "BlockSize: " << this->BlockSize[0] << " " << this->BlockSize[1] << " "
-     << this->BlockSize[2] << "\n";
-  os << indent << "OutputSpacing: " << this->OutputSpacing << "\n";
-  os << indent << "ConvexSide: " << this->ConvexSide << "\n";
 }

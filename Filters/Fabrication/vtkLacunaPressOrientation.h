@@ -87,6 +87,7 @@
 namespace lacuna
 {
 class Matrix4;
+struct PressOptions;
 struct PressSurface;
 }
 
@@ -96,7 +97,6 @@ class VTKLACUNAFILTERSFABRICATION_EXPORT vtkLacunaPressOrientation
 public:
   static vtkLacunaPressOrientation* New();
   vtkTypeMacro(vtkLacunaPressOrientation, vtkStructuredGridAlgorithm);
-  void PrintSelf(ostream& os, vtkIndent indent) override;
 
   static constexpr const char* PressRegionName = "PressRegion";
   static constexpr const char* DefectMaskName = "DefectMask";
@@ -188,13 +188,14 @@ protected:
   int FillInputPortInformation(int port, vtkInformation* info) override;
   void Announce(const lacuna::Ports& ports) override;
   void Make(const lacuna::Ports& ports, lacuna::AlgorithmExecution& execution) override;
-  std::string Parameters(int port) const override;
+  void Describe(lacuna::Properties& properties) const override;
 
 private:
   vtkLacunaPressOrientation(const vtkLacunaPressOrientation&) = delete;
   void operator=(const vtkLacunaPressOrientation&) = delete;
 
   class Plan;
+  lacuna::PressOptions GetOptions() const;
   void WarnOfWalls(const lacuna::PressSurface& surface, const lacuna::Matrix4& toWorld);
 
   int PlaneMethod = Fit;

@@ -4,6 +4,8 @@ import os
 import re
 from xml.etree import ElementTree
 
+import lacuna
+
 from paraview import servermanager
 from paraview.simple import *
 
@@ -123,6 +125,46 @@ def check_panel(name, proxy):
             assert domains, (name, p.get("name"), "has no domain")
 
 
+def declared(class_name):
+    """What PrintSelf says of each property: name -> (value, what it may be)."""
+    lines = re.findall(r"^  (\w+): (.*?)(?: \((.*)\))?$", str(getattr(lacuna, class_name)()), re.M)
+    return {name: (value, allowed) for name, value, allowed in lines}
+
+
+def check_declared(name, proxy):
+    """The choices, ranges and units of the XML are those that errors name."""
+    table = declared("vtkLacuna" + name)
+    for p in settings(proxy):
+        allowed = table.get(p.get("name"), ("", None))[1]
+        entries = [entry.get("text") for entry in p.iterfind("EnumerationDomain/Entry")]
+        if entries:
+            choices = [f"{value} ({text})" for value, text in enumerate(entries)]
+            expected = ", ".join(choices[:-1]) + " or " + choices[-1]
+            assert allowed == expected, (name, p.get("name"), "XML:", expected, "errors:", allowed)
+        domain = next((d for d in p if d.tag in ("DoubleRangeDomain", "IntRangeDomain") and d.find("RequiredProperties") is None), None)
+        assert allowed or domain is None, (name, p.get("name"), "has a range in the XML only")
+        if entries or not allowed:
+            continue
+        found = re.fullmatch(r"(?:0 \((?P<zero>.*)\) or )?(?:a finite number|at most (?P<high>\S+)|from (?P<low>\S+) to (?P<high2>\S+)|"
+                             r"above (?P<low2>\S+)(?: and at most (?P<high3>\S+))?|(?P<low3>\S+)(?P<unit3> .*)? or more)(?P<unit> .*)?", allowed)
+        assert found, (name, p.get("name"), allowed)
+        low = next((float(found[key]) for key in ("low", "low2", "low3") if found[key]), None)
+        high = next((float(found[key]) for key in ("high", "high2", "high3") if found[key]), None)
+        where = name, p.get("name"), allowed, domain is not None and domain.attrib
+        if low is not None:
+            least = min(low, 0) if found["zero"] else low
+            assert domain is not None and float(domain.get("min", "nan")) == least, where
+        elif domain is not None:
+            assert domain.get("min") is None, where
+        if domain is not None and domain.get("max"):
+            assert high is not None and float(domain.get("max")) <= high, where
+        label = p.find("Hints/LacunaLabel")
+        unit = (found["unit"] or found["unit3"] or "").strip().replace("degrees", "°")
+        if label is not None:
+            assert label.get("unit", "") == unit, (where, label.attrib)
+            assert label.get("zero") == found["zero"], (where, label.attrib)
+
+
 def check_icon(name, group, proxy, resources):
     entry = proxy.find("Hints/ShowInMenu")
     if group not in ("sources", "filters"):
@@ -230,7 +272,7 @@ def main():
     check_menus(proxies)
     faults = []
     for name, (group, proxy) in sorted(proxies.items()):
-        for check in (check_help, check_panel):
+        for check in (check_help, check_panel, check_declared):
             try:
                 check(name, proxy)
             except AssertionError as fault:

@@ -38,7 +38,6 @@ class $export $class : public vtkLacunaAlgorithmOf(vtkImageAlgorithm)
 public:
   static $class* New();
   vtkTypeMacro($class, vtkImageAlgorithm);
-  void PrintSelf(ostream& os, vtkIndent indent) override;
 
   ///@{
   /// What values are multiplied by: a finite number. Default: 1.
@@ -51,7 +50,7 @@ protected:
   ~$class() override = default;
 
   void Make(const lacuna::Ports& ports, lacuna::AlgorithmExecution& execution) override;
-  std::string Parameters(int port) const override;
+  void Describe(lacuna::Properties& properties) const override;
 
 private:
   $class(const $class&) = delete;
@@ -67,14 +66,12 @@ cat >"$folder/$class.cxx" <<END
 #include "$class.h"
 
 #include "lacunaArrays.h"
-#include "lacunaParameterText.h"
 #include "lacunaVolumeDirection.h"
 #include "vtkDataArray.h"
 #include "vtkImageData.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
 
-#include <cmath>
 #include <stdexcept>
 
 vtkStandardNewMacro($class);
@@ -96,10 +93,6 @@ void $class::Make(const lacuna::Ports& ports, lacuna::AlgorithmExecution& execut
   {
     throw std::runtime_error("input 0 has no active scalars: choose an array");
   }
-  if (!std::isfinite(this->Factor))
-  {
-    throw std::runtime_error("Factor is " + lacuna::FormatValue(this->Factor) + "; give a finite number");
-  }
   output->CopyStructure(input);
   vtkDataArray* to = lacuna::Arrays::AddScalars(output, from->GetDataType(), from->GetName());
   for (vtkIdType i = 0; i < to->GetNumberOfTuples(); ++i)
@@ -110,16 +103,9 @@ void $class::Make(const lacuna::Ports& ports, lacuna::AlgorithmExecution& execut
 }
 
 //------------------------------------------------------------------------------
-std::string $class::Parameters(int) const
+void $class::Describe(lacuna::Properties& properties) const
 {
-  return lacuna::ParameterText().Add("Factor", this->Factor).Get();
-}
-
-//------------------------------------------------------------------------------
-void $class::PrintSelf(ostream& os, vtkIndent indent)
-{
-  this->Superclass::PrintSelf(os, indent);
-  os << indent << "Factor: " << this->Factor << "\n";
+  properties.Add("Factor", this->Factor, lacuna::ValueRange::Any());
 }
 END
 

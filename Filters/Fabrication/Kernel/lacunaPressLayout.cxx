@@ -130,28 +130,16 @@ std::string Tenths(double value)
 
 void CheckOptions(const PressOptions& o)
 {
-  const auto check = [](const char* name, double value, bool positive)
-  {
-    if (!std::isfinite(value) || value < 0 || (positive && value == 0))
-    {
-      throw std::invalid_argument(name + (" is " + FormatNumber(value)) +
-        "; it must be a number of mm " + (positive ? "above 0" : ">= 0"));
-    }
-  };
-  check("PlateThickness", o.PlateThickness, true);
-  check("OutputSpacing", o.Spacing, true);
-  check("PlateMargin", o.PlateMargin, false);
-  check("FlangeWidth", o.FlangeWidth, true);
+  Properties properties;
+  o.Describe(properties);
+  properties.Check();
+  ValueRange::Above(0, "mm").Check("OutputSpacing", o.Spacing);
   if (o.Spacing > (1 + 1e-9) * o.FlangeWidth / NodesPerFlange)
   {
     throw std::invalid_argument("OutputSpacing is " + FormatNumber(o.Spacing) +
       " mm, too coarse for a flange of " + FormatNumber(o.FlangeWidth) +
       " mm (FlangeWidth); it must be at most an eighth of that, " +
       FormatNumber(o.FlangeWidth / NodesPerFlange) + " mm");
-  }
-  for (const double size : o.BlockSize.Elements)
-  {
-    check("BlockSize", size, false);
   }
 }
 
@@ -493,6 +481,19 @@ private:
   std::vector<double> Facing;
   std::vector<double> Stretch;
 };
+}
+
+//------------------------------------------------------------------------------
+void PressOptions::Describe(Properties& properties) const
+{
+  properties.Add("Mould", static_cast<int>(this->Mould), PressMouldNames)
+    .Add("Seating", static_cast<int>(this->Seating), PlateSeatingNames)
+    .Add("PlateThickness", this->PlateThickness, ValueRange::Above(0, "mm"))
+    .Add("PlateMargin", this->PlateMargin, ValueRange::AtLeast(0, "mm"))
+    .Add("FlangeWidth", this->FlangeWidth, ValueRange::Above(0, "mm"))
+    .Add("BlockSize", this->BlockSize.Elements, ValueRange::Above(0, "mm").OrZero("automatic"))
+    .Add("OutputSpacing", this->Spacing, ValueRange::Above(0, "mm").OrZero("of the map"))
+    .Add("ConvexSide", static_cast<int>(this->Convex), ConvexSideNames);
 }
 
 //------------------------------------------------------------------------------

@@ -6,9 +6,11 @@
 
 #include "lacunaMatrix4.h"
 #include "lacunaPlanarCurves.h"
+#include "lacunaProperties.h"
 #include "lacunaReliefSurface.h"
 #include "lacunaSurfaceFit.h"
 
+#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -80,6 +82,7 @@ enum class PressMould
   Female, ///< a cavity: the plate's convex face lies in it
   Male    ///< a boss: the plate's concave face lies on it
 };
+inline constexpr std::array<const char*, 2> PressMouldNames{ "Female", "Male" };
 
 /// How the plate lies in the patient.
 enum class PlateSeating
@@ -87,6 +90,7 @@ enum class PlateSeating
   Onlay, ///< on the surface: that is its inner face
   Inlay  ///< level with the surface: that is its outer face
 };
+inline constexpr std::array<const char*, 2> PlateSeatingNames{ "Onlay", "Inlay" };
 
 /// Where the surface bulges to.
 enum class ConvexSide
@@ -95,18 +99,21 @@ enum class ConvexSide
   Outward,   ///< towards the viewer of the relief
   Inward
 };
+inline constexpr std::array<const char*, 3> ConvexSideNames{ "Automatic", "Outward", "Inward" };
 
 struct PressOptions
 {
   PressMould Mould = PressMould::Female;
   PlateSeating Seating = PlateSeating::Onlay;
   ConvexSide Convex = ConvexSide::Automatic;
-  double PlateThickness = 0.7; ///< mm, > 0
-  double PlateMargin = 5;      ///< mm around the defect where the surface is kept, >= 0
-  double FlangeWidth = 15;     ///< mm over which the surface goes over into the press plane, > 0
+  double PlateThickness = 0.7; ///< mm
+  double PlateMargin = 5;      ///< mm around the defect where the surface is kept
+  double FlangeWidth = 15;     ///< mm over which the surface goes over into the press plane
   /// mm, of the block along x, y and z; 0: as small as it takes.
   Vec3 BlockSize{};
-  double Spacing = 0.5; ///< mm between nodes, > 0, at most FlangeWidth / NodesPerFlange
+  double Spacing = 0.5; ///< mm between nodes, at most FlangeWidth / NodesPerFlange
+
+  void Describe(Properties& properties) const; ///< with the ranges
 };
 
 /// Fewer would not show the flange's slopes.
