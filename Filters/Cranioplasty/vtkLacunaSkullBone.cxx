@@ -115,6 +115,35 @@ struct Kinds
   }
 };
 
+// Which voxels are at or above the level. Throws std::runtime_error when none is.
+void FindBone(vtkDataArray* scalars, double level, Kinds& kinds)
+{
+  kinds.Of.assign(static_cast<std::size_t>(scalars->GetNumberOfTuples()), Below);
+  const bool isAny =
+    lacuna::DispatchScalars(lacuna::ArrayScalarType::Get(scalars), scalars->GetVoidPointer(0),
+      [&](const auto* values)
+      {
+        bool any = false;
+        for (std::size_t p = 0; p < kinds.Of.size(); ++p)
+        {
+          if (static_cast<double>(values[p]) >= level)
+          {
+            kinds.Of[p] = Bone;
+            any = true;
+          }
+        }
+        return any;
+      });
+  if (!isAny)
+  {
+    double range[2];
+    scalars->GetRange(range);
+    throw std::runtime_error("no voxel is at or above Level, " + lacuna::FormatNumber(level) +
+      "; the values are " + lacuna::FormatNumber(range[0]) + " to " +
+      lacuna::FormatNumber(range[1]) + ". Lower Level");
+  }
+}
+
 // What is bone and what is not; voxels that are Removed beforehand stay so.
 void ChooseBone(Kinds& kinds, const double spacing[3], lacuna::AlgorithmExecution& execution)
 {
@@ -206,21 +235,19 @@ void MarkHalo(Kinds& kinds)
   }
 }
 
-// Takes away the bone within closed surfaces, in world coordinates.
-void TakeAway(Kinds& kinds, vtkImageData* image, vtkPolyData* surface)
+vtkSmartPointer<vtkPolyData> GetTriangles(vtkPolyData* surface)
 {
-  if (vtkSelectEnclosedPoints::IsSurfaceClosed(surface) == 0)
-  {
-    throw std::runtime_error("Exclude is not a closed surface, so that it has no inside; close it, "
-                             "as with Fill Holes or Clip Closed Surface");
-  }
   vtkNew<vtkTriangleFilter> filter;
   filter->SetInputData(surface);
   filter->PassLinesOff();
   filter->PassVertsOff();
   filter->Update();
-  vtkPolyData* triangles = filter->GetOutput();
-  // In voxels, a little aside: no row of voxels meets an edge or a corner exactly.
+  return filter->GetOutput();
+}
+
+// In voxels, a little aside: no row of voxels meets an edge or a corner exactly.
+std::vector<lacuna::Vec3> GetPointsAside(vtkPolyData* triangles, vtkImageData* image)
+{
   constexpr double aside[3] = { 0, 1.37e-6, 2.71e-6 };
   const int* extent = image->GetExtent();
   std::vector<lacuna::Vec3> points(static_cast<std::size_t>(triangles->GetNumberOfPoints()));
@@ -235,6 +262,13 @@ void TakeAway(Kinds& kinds, vtkImageData* image, vtkPolyData* surface)
       points[n][a] = index[a] - extent[2 * a] + aside[a];
     }
   }
+  return points;
+}
+
+// Where rows of voxels cross a triangle, by row. points: in voxels.
+void AddCrossings(const std::vector<lacuna::Vec3>& points, const vtkIdType* t, const int size[3],
+  std::vector<std::vector<double>>& crossings)
+{
   // Of an edge seen along the rows: on which side of it a row is; of both its triangles the same number.
   const auto side = [&](vtkIdType a, vtkIdType b, double y, double z)
   {
@@ -243,6 +277,43 @@ void TakeAway(Kinds& kinds, vtkImageData* image, vtkPolyData* surface)
     const double area = (q[1] - p[1]) * (z - p[2]) - (q[2] - p[2]) * (y - p[1]);
     return a < b ? area : -area;
   };
+  int low[3];
+  int high[3];
+  for (int a = 1; a < 3; ++a)
+  {
+    const auto [least, most] = std::minmax({ points[t[0]][a], points[t[1]][a], points[t[2]][a] });
+    low[a] = static_cast<int>(std::ceil(std::clamp(least, 0.0, 1.0 * size[a])));
+    high[a] = static_cast<int>(std::floor(std::clamp(most, -1.0, size[a] - 1.0)));
+  }
+  for (int k = low[2]; k <= high[2]; ++k)
+  {
+    for (int j = low[1]; j <= high[1]; ++j)
+    {
+      const double w[3] = { side(t[1], t[2], j, k), side(t[2], t[0], j, k),
+        side(t[0], t[1], j, k) };
+      if ((w[0] > 0) == (w[1] > 0) && (w[1] > 0) == (w[2] > 0))
+      {
+        const double sum = w[0] + w[1] + w[2];
+        if (sum != 0)
+        {
+          crossings[static_cast<std::size_t>(k) * size[1] + j].push_back(
+            (w[0] * points[t[0]][0] + w[1] * points[t[1]][0] + w[2] * points[t[2]][0]) / sum);
+        }
+      }
+    }
+  }
+}
+
+// Takes away the bone within closed surfaces, in world coordinates.
+void TakeAway(Kinds& kinds, vtkImageData* image, vtkPolyData* surface)
+{
+  if (vtkSelectEnclosedPoints::IsSurfaceClosed(surface) == 0)
+  {
+    throw std::runtime_error("Exclude is not a closed surface, so that it has no inside; close it, "
+                             "as with Fill Holes or Clip Closed Surface");
+  }
+  const vtkSmartPointer<vtkPolyData> triangles = GetTriangles(surface);
+  const std::vector<lacuna::Vec3> points = GetPointsAside(triangles, image);
   std::vector<std::vector<double>> crossings(
     static_cast<std::size_t>(kinds.Size[1]) * static_cast<std::size_t>(kinds.Size[2]));
   vtkCellArray* cells = triangles->GetPolys();
@@ -251,31 +322,7 @@ void TakeAway(Kinds& kinds, vtkImageData* image, vtkPolyData* surface)
     vtkIdType size = 0;
     const vtkIdType* t = nullptr;
     cells->GetCellAtId(c, size, t);
-    int low[3];
-    int high[3];
-    for (int a = 1; a < 3; ++a)
-    {
-      const auto [least, most] = std::minmax({ points[t[0]][a], points[t[1]][a], points[t[2]][a] });
-      low[a] = static_cast<int>(std::ceil(std::clamp(least, 0.0, 1.0 * kinds.Size[a])));
-      high[a] = static_cast<int>(std::floor(std::clamp(most, -1.0, kinds.Size[a] - 1.0)));
-    }
-    for (int k = low[2]; k <= high[2]; ++k)
-    {
-      for (int j = low[1]; j <= high[1]; ++j)
-      {
-        const double w[3] = { side(t[1], t[2], j, k), side(t[2], t[0], j, k),
-          side(t[0], t[1], j, k) };
-        if ((w[0] > 0) == (w[1] > 0) && (w[1] > 0) == (w[2] > 0))
-        {
-          const double sum = w[0] + w[1] + w[2];
-          if (sum != 0)
-          {
-            crossings[static_cast<std::size_t>(k) * kinds.Size[1] + j].push_back(
-              (w[0] * points[t[0]][0] + w[1] * points[t[1]][0] + w[2] * points[t[2]][0]) / sum);
-          }
-        }
-      }
-    }
+    AddCrossings(points, t, kinds.Size, crossings);
   }
   // Between the first and second crossing of a row, the third and fourth, and so on, is the inside.
   for (std::size_t row = 0; row < crossings.size(); ++row)
@@ -439,9 +486,8 @@ int vtkLacunaSkullBone::FillInputPortInformation(int port, vtkInformation* info)
 }
 
 //------------------------------------------------------------------------------
-void vtkLacunaSkullBone::Make(const lacuna::Ports& ports, lacuna::AlgorithmExecution& execution)
+vtkDataArray* vtkLacunaSkullBone::GetCheckedScalars(vtkImageData* input) const
 {
-  auto* input = ports.GetInput<vtkImageData>();
   if (!std::isfinite(this->Level))
   {
     throw std::runtime_error("Level must be a finite number");
@@ -459,38 +505,24 @@ void vtkLacunaSkullBone::Make(const lacuna::Ports& ports, lacuna::AlgorithmExecu
     throw std::runtime_error("the image has no active point scalars with one component; "
                              "choose an array with one value per voxel");
   }
-  const vtkIdType count = input->GetNumberOfPoints();
+  return scalars;
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaSkullBone::Make(const lacuna::Ports& ports, lacuna::AlgorithmExecution& execution)
+{
+  auto* input = ports.GetInput<vtkImageData>();
+  vtkDataArray* scalars = this->GetCheckedScalars(input);
   lacuna::RequireMemory("the bone",
-    static_cast<double>(count) * (scalars->GetDataTypeSize() + 1 + sizeof(vtkIdType) / 4));
+    static_cast<double>(input->GetNumberOfPoints()) *
+      (scalars->GetDataTypeSize() + 1 + sizeof(vtkIdType) / 4));
   const auto bone =
     vtkSmartPointer<vtkDataArray>::Take(vtkDataArray::CreateDataArray(scalars->GetDataType()));
   lacuna::Arrays::Copy(scalars, bone);
   const lacuna::ScalarType type = lacuna::ArrayScalarType::Get(bone);
   Kinds kinds;
   input->GetDimensions(kinds.Size);
-  kinds.Of.assign(static_cast<std::size_t>(count), Below);
-  const bool isAny = lacuna::DispatchScalars(type, bone->GetVoidPointer(0),
-    [&](const auto* values)
-    {
-      bool any = false;
-      for (vtkIdType p = 0; p < count; ++p)
-      {
-        if (static_cast<double>(values[p]) >= this->Level)
-        {
-          kinds.Of[p] = Bone;
-          any = true;
-        }
-      }
-      return any;
-    });
-  if (!isAny)
-  {
-    double range[2];
-    scalars->GetRange(range);
-    throw std::runtime_error("no voxel is at or above Level, " + lacuna::FormatNumber(this->Level) +
-      "; the values are " + lacuna::FormatNumber(range[0]) + " to " +
-      lacuna::FormatNumber(range[1]) + ". Lower Level");
-  }
+  FindBone(bone, this->Level, kinds);
   auto* exclude = ports.GetInput<vtkPolyData>(1);
   if (exclude && exclude->GetNumberOfCells() > 0)
   {

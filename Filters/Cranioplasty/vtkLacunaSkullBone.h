@@ -33,6 +33,9 @@
 
 #include <array> // for the proposed level
 
+class vtkDataArray;
+class vtkImageData;
+
 class VTKLACUNAFILTERSCRANIOPLASTY_EXPORT vtkLacunaSkullBone
   : public vtkLacunaAlgorithmOf(vtkImageAlgorithm)
 {
@@ -74,6 +77,8 @@ protected:
 private:
   vtkLacunaSkullBone(const vtkLacunaSkullBone&) = delete;
   void operator=(const vtkLacunaSkullBone&) = delete;
+  // Throws for any property and any image that is not possible.
+  vtkDataArray* GetCheckedScalars(vtkImageData* input) const;
 
   double Level = 300;
   double BridgeDiameter = 0;

@@ -112,6 +112,56 @@ std::string GetSmallHole(const lacuna::SkullRays& rays)
     : ". The largest gap has " + lacuna::SkullHoles(rays, { small[0] }).GetText();
 }
 
+// The one hole that is drawn; its rays become open.
+std::vector<std::vector<int>> OpenWithin(vtkPolyData* outline, lacuna::SkullRays& rays)
+{
+  std::vector<int> hole = FindRaysWithin(rays, lacuna::GetCurve(outline));
+  if (hole.empty())
+  {
+    throw std::runtime_error("the outline of the defect encloses nothing of the skull");
+  }
+  for (const int ray : hole)
+  {
+    rays.Kinds[ray] = lacuna::SkullRayKind::Open;
+  }
+  return { std::move(hole) };
+}
+
+// All holes of the vault, the largest first.
+std::vector<std::vector<int>> FindHoles(const lacuna::SkullRays& rays)
+{
+  std::vector<std::vector<int>> holes = FindDefects(rays);
+  if (holes.empty())
+  {
+    throw std::runtime_error("no hole of 1 cm^2 or more was found in the vault of the skull" +
+      GetSmallHole(rays) +
+      ". Look at the bone at this Level, or draw an outline around the defect");
+  }
+  return holes;
+}
+
+// The hole nearest to a point.
+std::size_t FindNearest(const lacuna::SkullHoles& holes, std::size_t count, const Vec3& point)
+{
+  std::size_t nearest = 0;
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0; k < count; ++k)
+  {
+    const double distance = holes.GetDistance(k, point);
+    if (distance < least)
+    {
+      least = distance;
+      nearest = k;
+    }
+  }
+  if (!(least <= MostDistance))
+  {
+    throw std::runtime_error("Point " + NameOf(point) + " is " + Rounded(least) +
+      " mm away from the nearest hole. Found: " + holes.GetText());
+  }
+  return nearest;
+}
+
 struct PlacedTemplate
 {
   lacuna::TemplateFit Fit;
@@ -253,6 +303,89 @@ std::string GetThinPlaces(const lacuna::SkullImplant& implant)
     " mm, at " + NameOf(implant.Points[thinnest]) + ". Look whether the material allows that";
 }
 
+// Of an implant: where its surface is uncertain, where it is thin, and where bone is undercut.
+void AddWarnings(const lacuna::SkullImplant& implant, const lacuna::SkullRays& rays,
+  const lacuna::MirrorPlane& plane, double edgeClearance, std::vector<std::string>& warnings)
+{
+  if (implant.LargestError > lacuna::TrustedError)
+  {
+    warnings.push_back(GetDoubts(implant, rays, plane));
+  }
+  if (const std::string thin = GetThinPlaces(implant); !thin.empty())
+  {
+    warnings.push_back(thin);
+  }
+  if (implant.UndercutWidth > WideUndercut)
+  {
+    warnings.push_back("the wall of bone has undercuts, so that the gap beside the implant is up "
+                       "to " +
+      Rounded(implant.UndercutWidth + edgeClearance) + " mm wide, most at " +
+      NameOf(implant.UndercutPoint) + ". Another InsertionDirection may suit this place better");
+  }
+}
+
+// Field data of the output.
+void SetWarnings(vtkPolyData* output, const std::vector<std::string>& warnings)
+{
+  vtkNew<vtkStringArray> told;
+  told->SetName("Warnings");
+  for (const std::string& warning : warnings)
+  {
+    told->InsertNextValue(warning);
+  }
+  output->GetFieldData()->AddArray(told);
+}
+
+void SetNumber(vtkPolyData* output, const char* name, double value)
+{
+  lacuna::FieldData::Set(output, name, { value }, 1);
+}
+
+void SetPoint(vtkPolyData* output, const char* name, const Vec3& p)
+{
+  lacuna::FieldData::Set(output, name, { p[0], p[1], p[2] }, 3);
+}
+
+void SetMeasures(vtkPolyData* output, const lacuna::SkullImplant& implant, double density)
+{
+  const auto range = std::minmax_element(implant.Thickness.begin(), implant.Thickness.end());
+  SetNumber(output, "Volume", implant.Volume);
+  SetNumber(output, "Mass", implant.Volume * density / 1000);
+  SetNumber(output, "OuterArea", implant.OuterArea);
+  SetNumber(output, "DefectArea", implant.HoleArea);
+  SetNumber(output, "ThicknessMinimum", *range.first);
+  SetNumber(output, "ThicknessMean",
+    std::accumulate(implant.Thickness.begin(), implant.Thickness.end(), 0.0) /
+      static_cast<double>(implant.Thickness.size()));
+  SetNumber(output, "ThicknessMaximum", *range.second);
+  SetNumber(output, "PredictedErrorRMS", implant.ErrorRMS);
+  SetNumber(output, "PredictedErrorMaximum", implant.LargestError);
+  SetPoint(output, "PredictedErrorMaximumPoint", implant.LargestErrorPoint);
+  SetPoint(output, "InsertionDirection", implant.InsertionDirection);
+  SetNumber(output, "LeastTaper", implant.LeastTaper);
+  SetNumber(output, "InsertionClearance", implant.InsertionClearance);
+  SetNumber(output, "UndercutVolume", implant.UndercutVolume);
+  SetNumber(output, "UndercutWidth", implant.UndercutWidth);
+  SetPoint(output, "UndercutPoint", implant.UndercutPoint);
+  SetNumber(output, "MinimumThickness", implant.MinimumThickness);
+  SetPoint(output, "MinimumThicknessPoint", implant.ThinnestPoint);
+  SetNumber(output, "NumberOfHoles", implant.Holes);
+}
+
+void SetPlane(vtkPolyData* output, const lacuna::MirrorPlane& plane, const Vec3& center)
+{
+  SetPoint(output, "SymmetryPlaneOrigin", center - plane.Distance(center) * plane.Normal);
+  SetPoint(output, "SymmetryPlaneNormal", plane.Normal);
+}
+
+void SetTemplate(
+  vtkPolyData* output, const lacuna::TemplateFit& fit, const lacuna::SkullShape& shape)
+{
+  SetNumber(output, "TemplateFitRMS", fit.RMS);
+  SetNumber(output, "TemplateScale", fit.Scale);
+  SetNumber(output, "TemplateFactor", shape.GetOuterFactor());
+  SetNumber(output, "TemplateThicknessFactor", shape.GetThicknessFactor());
+}
 }
 
 //------------------------------------------------------------------------------
@@ -293,6 +426,21 @@ int vtkLacunaSkullImplant::FillInputPortInformation(int port, vtkInformation* in
 //------------------------------------------------------------------------------
 lacuna::SkullImplantOptions vtkLacunaSkullImplant::GetOptions() const
 {
+  if (!(this->Level > 0) || !std::isfinite(this->Level))
+  {
+    throw std::runtime_error("Level is " + lacuna::FormatNumber(this->Level) +
+      "; it must be a number above 0, the grey level of bone");
+  }
+  if (this->DefectChoice != Largest && this->DefectChoice != NearestToPoint)
+  {
+    throw std::runtime_error("DefectChoice is " + std::to_string(this->DefectChoice) +
+      "; it must be 0 (Largest) or 1 (Nearest to Point)");
+  }
+  if (!(this->Density > 0 && std::isfinite(this->Density)))
+  {
+    throw std::runtime_error("Density is " + lacuna::FormatNumber(this->Density) +
+      "; it must be a number of g/cm^3 above 0");
+  }
   lacuna::SkullImplantOptions options;
   options.Level = this->Level;
   options.EdgeClearance = this->EdgeClearance;
@@ -318,40 +466,25 @@ lacuna::SkullImplantOptions vtkLacunaSkullImplant::GetOptions() const
       " mm; it must be between 2 and 20");
   }
   options.Text = lacuna::GetTextOutlines(this->EngravedText, this->TextHeight);
-  return options;
-}
-
-//------------------------------------------------------------------------------
-void vtkLacunaSkullImplant::Make(const lacuna::Ports& ports, lacuna::AlgorithmExecution& execution)
-{
-  auto* image = ports.GetInput<vtkImageData>();
-  auto* outline = ports.GetInput<vtkPolyData>(1);
-  auto* other = ports.GetInput<vtkDataSet>(2);
-  const bool hasTemplate = other && other->GetNumberOfPoints() > 0;
-  if (!(this->Level > 0) || !std::isfinite(this->Level))
-  {
-    throw std::runtime_error("Level is " + lacuna::FormatNumber(this->Level) +
-      "; it must be a number above 0, the grey level of bone");
-  }
-  if (this->DefectChoice != Largest && this->DefectChoice != NearestToPoint)
-  {
-    throw std::runtime_error("DefectChoice is " + std::to_string(this->DefectChoice) +
-      "; it must be 0 (Largest) or 1 (Nearest to Point)");
-  }
-  if (!(this->Density > 0 && std::isfinite(this->Density)))
-  {
-    throw std::runtime_error("Density is " + lacuna::FormatNumber(this->Density) +
-      "; it must be a number of g/cm^3 above 0");
-  }
-  const lacuna::SkullImplantOptions options = this->GetOptions();
   CheckSkullImplantOptions(options);
   if (!(this->TemplateLevel >= 0) || !std::isfinite(this->TemplateLevel))
   {
     throw std::runtime_error("TemplateLevel is " + lacuna::FormatNumber(this->TemplateLevel) +
       "; it must be a number above 0, the grey level of the template's bone, or 0 for Level");
   }
+  return options;
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaSkullImplant::Make(const lacuna::Ports& ports, lacuna::AlgorithmExecution& execution)
+{
+  auto* outline = ports.GetInput<vtkPolyData>(1);
+  auto* other = ports.GetInput<vtkDataSet>(2);
+  const bool isDrawn = outline && outline->GetNumberOfPoints() > 0;
+  const bool hasTemplate = other && other->GetNumberOfPoints() > 0;
+  const lacuna::SkullImplantOptions options = this->GetOptions();
   vtkSmartPointer<vtkDataArray> keep;
-  const lacuna::VoxelVolume volume = lacuna::GetBoneVolume(image, keep);
+  const lacuna::VoxelVolume volume = lacuna::GetBoneVolume(ports.GetInput<vtkImageData>(), keep);
 
   execution.SetStage(0, 0.3);
   const lacuna::SymmetryResult symmetry = FindSymmetry(volume, this->Level, execution);
@@ -359,52 +492,13 @@ void vtkLacunaSkullImplant::Make(const lacuna::Ports& ports, lacuna::AlgorithmEx
   const Vec3 center = FindSkullCenter(volume, this->Level, symmetry.Plane, execution);
   execution.SetStage(0.32, 0.35);
   lacuna::SkullRays rays = TraceSkull(volume, this->Level, center, RaySpacing, execution);
-  std::vector<std::vector<int>> defects;
-  const bool isDrawn = outline && outline->GetNumberOfPoints() > 0;
-  if (isDrawn)
-  {
-    defects.push_back(FindRaysWithin(rays, lacuna::GetCurve(outline)));
-    if (defects[0].empty())
-    {
-      throw std::runtime_error("the outline of the defect encloses nothing of the skull");
-    }
-    for (const int ray : defects[0])
-    {
-      rays.Kinds[ray] = lacuna::SkullRayKind::Open;
-    }
-  }
-  else
-  {
-    defects = FindDefects(rays);
-  }
-  if (defects.empty())
-  {
-    throw std::runtime_error("no hole of 1 cm^2 or more was found in the vault of the skull" +
-      GetSmallHole(rays) +
-      ". Look at the bone at this Level, or draw an outline around the defect");
-  }
+  const std::vector<std::vector<int>> defects =
+    isDrawn ? OpenWithin(outline, rays) : FindHoles(rays);
   const lacuna::SkullHoles holes(rays, defects);
   holes.SetOutput(ports.GetOutput<vtkPolyData>(1), isDrawn ? 0 : 1);
-  std::size_t chosen = 0;
-  if (!isDrawn && this->DefectChoice == NearestToPoint)
-  {
-    const Vec3 point{ this->Point[0], this->Point[1], this->Point[2] };
-    double least = std::numeric_limits<double>::infinity();
-    for (std::size_t k = 0; k < defects.size(); ++k)
-    {
-      const double distance = holes.GetDistance(k, point);
-      if (distance < least)
-      {
-        least = distance;
-        chosen = k;
-      }
-    }
-    if (!(least <= MostDistance))
-    {
-      throw std::runtime_error("Point " + NameOf(point) + " is " + Rounded(least) +
-        " mm away from the nearest hole. Found: " + holes.GetText());
-    }
-  }
+  const std::size_t chosen = !isDrawn && this->DefectChoice == NearestToPoint
+    ? FindNearest(holes, defects.size(), { this->Point[0], this->Point[1], this->Point[2] })
+    : 0;
 
   execution.SetStage(0.35, 0.4);
   const lacuna::SoundBone bone = GetSoundBone(rays);
@@ -440,71 +534,21 @@ void vtkLacunaSkullImplant::Make(const lacuna::Ports& ports, lacuna::AlgorithmEx
       "the template is not used: the sound bone of this skull has nothing of its shape. Compare "
       "both in the picture, or give another skull");
   }
-  if (implant.LargestError > lacuna::TrustedError)
-  {
-    warnings.push_back(GetDoubts(implant, rays, shape.GetPlane()));
-  }
-  if (const std::string thin = GetThinPlaces(implant); !thin.empty())
-  {
-    warnings.push_back(thin);
-  }
-  if (implant.UndercutWidth > WideUndercut)
-  {
-    warnings.push_back("the wall of bone has undercuts, so that the gap beside the implant is up "
-                       "to " +
-      Rounded(implant.UndercutWidth + this->EdgeClearance) + " mm wide, most at " +
-      NameOf(implant.UndercutPoint) + ". Another InsertionDirection may suit this place better");
-  }
-  vtkNew<vtkStringArray> told;
-  told->SetName("Warnings");
+  AddWarnings(implant, rays, shape.GetPlane(), this->EdgeClearance, warnings);
   for (const std::string& warning : warnings)
   {
     vtkWarningMacro(<< warning);
-    told->InsertNextValue(warning);
   }
   auto* output = ports.GetOutput<vtkPolyData>();
   lacuna::SetImplant(output, implant);
-  output->GetFieldData()->AddArray(told);
-  auto* plates = ports.GetOutput<vtkPolyData>(2);
-  lacuna::SetPlates(plates, implant, this->ScrewLength);
-  const auto set = [&](const char* name, double value)
-  { lacuna::FieldData::Set(output, name, { value }, 1); };
-  const auto setPoint = [&](const char* name, const Vec3& p) {
-    lacuna::FieldData::Set(output, name, { p[0], p[1], p[2] }, 3);
-  };
-  const auto range = std::minmax_element(implant.Thickness.begin(), implant.Thickness.end());
-  set("ChosenDefect", isDrawn ? 0 : static_cast<double>(chosen + 1));
-  set("Volume", implant.Volume);
-  set("Mass", implant.Volume * this->Density / 1000);
-  set("OuterArea", implant.OuterArea);
-  set("DefectArea", implant.HoleArea);
-  set("ThicknessMinimum", *range.first);
-  set("ThicknessMean",
-    std::accumulate(implant.Thickness.begin(), implant.Thickness.end(), 0.0) /
-      static_cast<double>(implant.Thickness.size()));
-  set("ThicknessMaximum", *range.second);
-  set("PredictedErrorRMS", implant.ErrorRMS);
-  set("PredictedErrorMaximum", implant.LargestError);
-  setPoint("PredictedErrorMaximumPoint", implant.LargestErrorPoint);
-  setPoint("InsertionDirection", implant.InsertionDirection);
-  set("LeastTaper", implant.LeastTaper);
-  set("InsertionClearance", implant.InsertionClearance);
-  set("UndercutVolume", implant.UndercutVolume);
-  set("UndercutWidth", implant.UndercutWidth);
-  setPoint("UndercutPoint", implant.UndercutPoint);
-  set("MinimumThickness", implant.MinimumThickness);
-  setPoint("MinimumThicknessPoint", implant.ThinnestPoint);
-  set("NumberOfHoles", implant.Holes);
-  const lacuna::MirrorPlane& plane = shape.GetPlane();
-  setPoint("SymmetryPlaneOrigin", center - plane.Distance(center) * plane.Normal);
-  setPoint("SymmetryPlaneNormal", plane.Normal);
-
+  SetWarnings(output, warnings);
+  lacuna::SetPlates(ports.GetOutput<vtkPolyData>(2), implant, this->ScrewLength);
+  SetNumber(output, "ChosenDefect", isDrawn ? 0 : static_cast<double>(chosen + 1));
+  SetMeasures(output, implant, this->Density);
+  SetPlane(output, shape.GetPlane(), center);
   if (hasTemplate)
   {
-    set("TemplateFitRMS", example.Fit.RMS);
-    set("TemplateScale", example.Fit.Scale);
-    set("TemplateFactor", shape.GetOuterFactor());
-    set("TemplateThicknessFactor", shape.GetThicknessFactor());
+    SetTemplate(output, example.Fit, shape);
   }
 }
 

@@ -223,6 +223,7 @@ protected:
 private:
   vtkLacunaSkullImplant(const vtkLacunaSkullImplant&) = delete;
   void operator=(const vtkLacunaSkullImplant&) = delete;
+  // Throws for any property that is not possible.
   lacuna::SkullImplantOptions GetOptions() const;
 
   double Level = 300;

@@ -203,6 +203,34 @@ std::string DescribeTool(vtkPolyData* path, int number)
           " end, diameter " + lacuna::FormatNumber(2 * radius) + " mm"
                 : std::string());
 }
+
+// What the head of the program says.
+std::vector<std::string> GetComments(
+  vtkPolyData* path, const lacuna::GCodeOptions& options, bool isMoved)
+{
+  const std::string version = std::string("Lacuna ") + lacuna::Provenance::GetVersion();
+  std::vector<std::string> comments = { version + " G-Code Writer",
+    vtksys::SystemTools::GetCurrentDateTime("%Y-%m-%d %H:%M"), DescribePlace(path, isMoved),
+    DescribeTool(path, options.ToolNumber) };
+  if (options.ArcTolerance > 0)
+  {
+    comments.push_back("Motions joined to arcs, at most " +
+      lacuna::FormatNumber(options.ArcTolerance) + " mm above the path");
+  }
+  if (lacuna::Mirrored::IsMarked(path))
+  {
+    comments.emplace_back("MIRROR IMAGE, left is right");
+  }
+  if (const double time = GetNumber(path, "MachiningTime"); time > 0)
+  {
+    comments.push_back("Time about " + std::to_string(std::llround(std::ceil(time / 60))) + " min");
+  }
+  for (const std::string& step : lacuna::Provenance::Get(path))
+  {
+    comments.push_back("Made by: " + step);
+  }
+  return comments;
+}
 }
 
 //------------------------------------------------------------------------------
@@ -239,20 +267,8 @@ void vtkLacunaGCodeWriter::WriteFile()
 }
 
 //------------------------------------------------------------------------------
-void vtkLacunaGCodeWriter::WriteProgram(vtkPolyData* path)
+lacuna::GCodeOptions vtkLacunaGCodeWriter::GetOptions(vtkPolyData* path, bool isMoved) const
 {
-  lacuna::Vec3 start{ 0, 0, 0 };
-  const std::vector<lacuna::GCodeMove> moves = GetMoves(path, start);
-  const bool mirrored = lacuna::Mirrored::IsMarked(path);
-  if (mirrored && !this->AllowMirrored)
-  {
-    throw std::runtime_error(
-      "the path is over a mirror image of the patient (field data Mirrored): nothing made from it "
-      "fits the side it was taken from. Turn on AllowMirrored if the mirrored side is what you "
-      "want");
-  }
-  const std::string moved = CheckPlace(path);
-
   lacuna::GCodeOptions options;
   options.ProgramNumber = this->ProgramNumber;
   options.ToolNumber = this->ToolNumber;
@@ -281,29 +297,25 @@ void vtkLacunaGCodeWriter::WriteProgram(vtkPolyData* path)
   {
     options.Footer = this->Footer;
   }
-  const std::string version = std::string("Lacuna ") + lacuna::Provenance::GetVersion();
-  options.Comments = { version + " G-Code Writer",
-    vtksys::SystemTools::GetCurrentDateTime("%Y-%m-%d %H:%M"), DescribePlace(path, !moved.empty()),
-    DescribeTool(path, this->ToolNumber) };
-  if (this->ArcTolerance > 0)
-  {
-    options.Comments.push_back("Motions joined to arcs, at most " +
-      lacuna::FormatNumber(this->ArcTolerance) + " mm above the path");
-  }
-  if (mirrored)
-  {
-    options.Comments.emplace_back("MIRROR IMAGE, left is right");
-  }
-  if (const double time = GetNumber(path, "MachiningTime"); time > 0)
-  {
-    options.Comments.push_back(
-      "Time about " + std::to_string(std::llround(std::ceil(time / 60))) + " min");
-  }
-  for (const std::string& step : lacuna::Provenance::Get(path))
-  {
-    options.Comments.push_back("Made by: " + step);
-  }
+  options.Comments = GetComments(path, options, isMoved);
+  return options;
+}
 
+//------------------------------------------------------------------------------
+void vtkLacunaGCodeWriter::WriteProgram(vtkPolyData* path)
+{
+  lacuna::Vec3 start{ 0, 0, 0 };
+  const std::vector<lacuna::GCodeMove> moves = GetMoves(path, start);
+  const bool mirrored = lacuna::Mirrored::IsMarked(path);
+  if (mirrored && !this->AllowMirrored)
+  {
+    throw std::runtime_error(
+      "the path is over a mirror image of the patient (field data Mirrored): nothing made from it "
+      "fits the side it was taken from. Turn on AllowMirrored if the mirrored side is what you "
+      "want");
+  }
+  const std::string moved = CheckPlace(path);
+  const lacuna::GCodeOptions options = this->GetOptions(path, !moved.empty());
   lacuna::AlgorithmExecution execution(this);
   execution.SetStage(0, 0.9);
   const lacuna::GCodeProgram program = lacuna::MakeGCode(start, moves, options, &execution);

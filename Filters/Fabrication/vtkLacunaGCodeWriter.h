@@ -31,6 +31,11 @@
 
 class vtkPolyData;
 
+namespace lacuna
+{
+struct GCodeOptions;
+}
+
 class VTKLACUNAFILTERSFABRICATION_EXPORT vtkLacunaGCodeWriter : public vtkLacunaWriter
 {
 public:
@@ -137,6 +142,7 @@ private:
   void operator=(const vtkLacunaGCodeWriter&) = delete;
 
   void WriteProgram(vtkPolyData* path);
+  lacuna::GCodeOptions GetOptions(vtkPolyData* path, bool isMoved) const;
 
   int ProgramNumber = 1;
   int ToolNumber = 1;

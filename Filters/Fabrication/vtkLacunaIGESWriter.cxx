@@ -122,6 +122,25 @@ private:
   std::int64_t Colours[4] = { 0, 0, 0, 0 };
 };
 
+lacuna::IGESDocument MakeDocument(const lacuna::CADContent& content)
+{
+  lacuna::IGESDocument document;
+  Composer composer(document);
+  const auto addAll = [&](const auto& things)
+  {
+    for (const auto& thing : things)
+    {
+      composer.Add(thing);
+    }
+  };
+  addAll(content.Surfaces);
+  addAll(content.Curves);
+  addAll(content.Polygons);
+  addAll(content.Lines);
+  addAll(content.Points);
+  return document;
+}
+
 //------------------------------------------------------------------------------
 // Lines for people: what there is, where it comes from, and how it was made.
 void Describe(const lacuna::CADContent& content, std::vector<std::string>& text)
@@ -189,7 +208,28 @@ void vtkLacunaIGESWriter::WriteFile()
   options.AllowMirrored = this->AllowMirrored;
   options.SkipUnsupported = this->SkipUnsupported;
   const lacuna::CADContent content(input, options, execution);
+  const lacuna::IGESHeader header = this->MakeHeader(content);
+  const std::string text = MakeDocument(content).GetText(header);
+  execution.SetStage(0.9, 1);
+  execution.Report(0);
+  lacuna::WriteFileAtomically(this->FileName, text);
+  this->UpdateProgress(1); // no longer to be stopped: the file is there
 
+  this->SetResults(content);
+  this->FileSize = static_cast<vtkTypeInt64>(text.size());
+  for (const std::string& warning : content.Warnings)
+  {
+    vtkWarningMacro(<< lacuna::ToPrintable(this->FileName + (": " + warning)));
+  }
+  vtkLog(INFO, << "IGES Writer: " << this->FileName << ", " << this->FileSize << " bytes, "
+               << this->NumberOfSurfaces << " surfaces, " << this->NumberOfCurves << " curves, "
+               << this->NumberOfPoints << " points, largest deviation " << this->MaximumDeviation
+               << " mm");
+}
+
+//------------------------------------------------------------------------------
+lacuna::IGESHeader vtkLacunaIGESWriter::MakeHeader(const lacuna::CADContent& content)
+{
   lacuna::IGESHeader header;
   const std::string version = std::string("Lacuna ") + lacuna::Provenance::GetVersion();
   header.FileName = vtksys::SystemTools::GetFilenameName(this->FileName);
@@ -211,27 +251,12 @@ void vtkLacunaIGESWriter::WriteFile()
   {
     header.Start.push_back("Made by: " + step);
   }
+  return header;
+}
 
-  lacuna::IGESDocument document;
-  Composer composer(document);
-  const auto addAll = [&](const auto& things)
-  {
-    for (const auto& thing : things)
-    {
-      composer.Add(thing);
-    }
-  };
-  addAll(content.Surfaces);
-  addAll(content.Curves);
-  addAll(content.Polygons);
-  addAll(content.Lines);
-  addAll(content.Points);
-  const std::string text = document.GetText(header);
-  execution.SetStage(0.9, 1);
-  execution.Report(0);
-  lacuna::WriteFileAtomically(this->FileName, text);
-  this->UpdateProgress(1); // no longer to be stopped: the file is there
-
+//------------------------------------------------------------------------------
+void vtkLacunaIGESWriter::SetResults(const lacuna::CADContent& content)
+{
   for (const lacuna::CADSurface& surface : content.Surfaces)
   {
     this->MaximumDeviation = std::max(this->MaximumDeviation, surface.Fit.MaximumDeviation);
@@ -246,15 +271,6 @@ void vtkLacunaIGESWriter::WriteFile()
   this->NumberOfCurves =
     static_cast<int>(content.Curves.size() + content.Polygons.size() + content.Lines.size());
   this->NumberOfPoints = static_cast<int>(content.Points.size());
-  this->FileSize = static_cast<vtkTypeInt64>(text.size());
-  for (const std::string& warning : content.Warnings)
-  {
-    vtkWarningMacro(<< lacuna::ToPrintable(this->FileName + (": " + warning)));
-  }
-  vtkLog(INFO, << "IGES Writer: " << this->FileName << ", " << this->FileSize << " bytes, "
-               << this->NumberOfSurfaces << " surfaces, " << this->NumberOfCurves << " curves, "
-               << this->NumberOfPoints << " points, largest deviation " << this->MaximumDeviation
-               << " mm");
 }
 
 //------------------------------------------------------------------------------

@@ -52,6 +52,12 @@
 #include "vtkLacunaFiltersFabricationModule.h" // for export macro
 #include "vtkLacunaWriter.h"
 
+namespace lacuna
+{
+class CADContent;
+struct IGESHeader;
+}
+
 class VTKLACUNAFILTERSFABRICATION_EXPORT vtkLacunaIGESWriter : public vtkLacunaWriter
 {
 public:
@@ -147,6 +153,9 @@ protected:
 private:
   vtkLacunaIGESWriter(const vtkLacunaIGESWriter&) = delete;
   void operator=(const vtkLacunaIGESWriter&) = delete;
+
+  lacuna::IGESHeader MakeHeader(const lacuna::CADContent& content);
+  void SetResults(const lacuna::CADContent& content);
 
   double Tolerance = 0.001;
   int DefectOutline = Curve;

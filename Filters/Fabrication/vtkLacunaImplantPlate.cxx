@@ -125,6 +125,48 @@ std::vector<lacuna::Vec3> GetMarkedHoles(vtkPointSet* marks, double distance)
   }
   return holes;
 }
+
+//------------------------------------------------------------------------------
+void SetMeasures(vtkPolyData* output, const lacuna::ImplantPlate& plate, double density,
+  const lacuna::Matrix4& toWorld)
+{
+  constexpr double NaN = std::numeric_limits<double>::quiet_NaN();
+  const bool isMeasured = std::isfinite(plate.MinimumThickness); // else all of it is edge
+  const lacuna::Vec3 tightest = std::isfinite(plate.MinimumRadius)
+    ? toWorld.Point(plate.MinimumRadiusPoint)
+    : lacuna::Vec3{ NaN, NaN, NaN };
+  lacuna::FieldData::Set(output, "Volume", { plate.Volume }, 1);
+  lacuna::FieldData::Set(output, "Mass", { plate.Volume * density / 1000 }, 1);
+  lacuna::FieldData::Set(output, "OuterArea", { plate.OuterArea }, 1);
+  lacuna::FieldData::Set(output, "OutlineLength", { plate.Outline.Length }, 1);
+  lacuna::FieldData::Set(
+    output, "MinimumThickness", { isMeasured ? plate.MinimumThickness : NaN }, 1);
+  lacuna::FieldData::Set(
+    output, "MinimumCurvatureRadius", { isMeasured ? plate.MinimumRadius : NaN }, 1);
+  lacuna::FieldData::Set(output, "TightestPoint", { tightest[0], tightest[1], tightest[2] }, 3);
+}
+
+//------------------------------------------------------------------------------
+// bone: its thickness under each screw hole.
+void SetHoles(vtkPolyData* output, const lacuna::ImplantPlate& plate,
+  const std::vector<double>& bone, const lacuna::Matrix4& toWorld)
+{
+  std::vector<double> centers;
+  std::vector<double> axes;
+  std::vector<double> land;
+  for (const lacuna::PlateHole& hole : plate.Holes)
+  {
+    Append(centers, toWorld.Point(hole.Centre));
+    Append(axes, lacuna::Normalized(toWorld.Vector(hole.Axis)));
+    land.push_back(hole.Land);
+  }
+  lacuna::FieldData::Set(output, "HoleCenters", centers, 3);
+  lacuna::FieldData::Set(output, "HoleAxes", axes, 3);
+  lacuna::FieldData::Set(output, "HoleBoneThickness", bone, 1);
+  lacuna::FieldData::Set(output, "HoleLand", land, 1);
+  lacuna::FieldData::Set(
+    output, "DrainageHoleCount", { static_cast<double>(plate.DrainageHoles) }, 1);
+}
 }
 
 //------------------------------------------------------------------------------
@@ -156,11 +198,8 @@ int vtkLacunaImplantPlate::FillInputPortInformation(int port, vtkInformation* in
 }
 
 //------------------------------------------------------------------------------
-void vtkLacunaImplantPlate::Make(const lacuna::Ports& ports, lacuna::AlgorithmExecution& execution)
+void vtkLacunaImplantPlate::CheckProperties() const
 {
-  auto* map = ports.GetInput<vtkImageData>();
-  auto* marks = ports.GetInput<vtkPointSet>(1);
-  auto* output = ports.GetOutput<vtkPolyData>();
   if (this->Side != Inward && this->Side != Outward)
   {
     throw std::runtime_error(
@@ -176,10 +215,11 @@ void vtkLacunaImplantPlate::Make(const lacuna::Ports& ports, lacuna::AlgorithmEx
     throw std::runtime_error("Density is " + lacuna::FormatNumber(this->Density) +
       "; it must be a number of g/cm^3 above 0");
   }
-  const lacuna::FittedPart part(map, "a plate");
-  const lacuna::Vec2& spacing = part.Spacing;
-  const lacuna::Matrix4& toWorld = part.ToWorld;
+}
 
+//------------------------------------------------------------------------------
+lacuna::ImplantPlateOptions vtkLacunaImplantPlate::GetOptions(const lacuna::FittedPart& part) const
+{
   lacuna::ImplantPlateOptions options;
   options.Thickness = this->Thickness;
   options.Side = this->Side == Inward ? lacuna::PlateSide::Inward : lacuna::PlateSide::Outward;
@@ -188,12 +228,18 @@ void vtkLacunaImplantPlate::Make(const lacuna::Ports& ports, lacuna::AlgorithmEx
   options.Edge = static_cast<lacuna::PlateEdge>(this->EdgeShape);
   options.EdgeSize = this->Bevel;
   options.BothFaces = this->BevelBothFaces;
-  const bool automatic = this->TriangleSize == 0;
-  options.TriangleSize =
-    automatic ? std::min({ LargestTriangle, spacing[0], spacing[1] }) : this->TriangleSize;
+  options.TriangleSize = this->TriangleSize == 0
+    ? std::min({ LargestTriangle, part.Spacing[0], part.Spacing[1] })
+    : this->TriangleSize;
   options.Hole = { this->HoleDiameter, this->CountersinkDiameter, this->CountersinkAngle };
   options.DrainageSpacing = this->DrainageSpacing;
   options.DrainageDiameter = this->DrainageDiameter;
+  return options;
+}
+
+//------------------------------------------------------------------------------
+std::vector<lacuna::Vec3> vtkLacunaImplantPlate::GetHoles(vtkPointSet* marks) const
+{
   std::vector<lacuna::Vec3> holes;
   for (const auto& p : this->HolePoints)
   {
@@ -205,23 +251,24 @@ void vtkLacunaImplantPlate::Make(const lacuna::Ports& ports, lacuna::AlgorithmEx
     const std::vector<lacuna::Vec3> marked = GetMarkedHoles(marks, together);
     holes.insert(holes.end(), marked.begin(), marked.end());
   }
-  const lacuna::Matrix4 toPart = toWorld.Inverse();
-  for (const lacuna::Vec3& p : holes)
-  {
-    options.HolePoints.push_back(toPart.Point(p));
-  }
+  return holes;
+}
 
+//------------------------------------------------------------------------------
+lacuna::ImplantPlate vtkLacunaImplantPlate::MakePlate(const lacuna::FittedPart& part,
+  lacuna::ImplantPlateOptions& options, lacuna::AlgorithmExecution& execution)
+{
   execution.SetStage(0, 0.1);
-  const lacuna::ReliefSurface surface(execution, part.Size, part.Depths, spacing);
+  const lacuna::ReliefSurface surface(execution, part.Size, part.Depths, part.Spacing);
   execution.SetStage(0.1, 1);
   lacuna::ImplantPlate plate;
   for (int refinements = 0;; ++refinements)
   {
     const lacuna::Execution::NestedStages nested(execution);
-    plate =
-      lacuna::MakeImplantPlate(execution, surface, part.Size, spacing, part.Mask, options, toWorld);
+    plate = lacuna::MakeImplantPlate(
+      execution, surface, part.Size, part.Spacing, part.Mask, options, part.ToWorld);
     const double lack = 1 - plate.MinimumThickness / this->Thickness;
-    if (!automatic || lack <= LargestLack || refinements == MaximumRefinements)
+    if (this->TriangleSize != 0 || lack <= LargestLack || refinements == MaximumRefinements)
     {
       break;
     }
@@ -244,30 +291,26 @@ void vtkLacunaImplantPlate::Make(const lacuna::Ports& ports, lacuna::AlgorithmEx
     vtkWarningMacro("the plate overlaps the bone (EdgeClearance is negative) and grows inwards, "
                     "so its rim lies within the bone; use Side Outward, or prepare a seat");
   }
+  return plate;
+}
 
-  lacuna::SolidMesh::Set(output, plate, toWorld, PlateFaceName);
-  std::vector<double> centers;
-  std::vector<double> axes;
-  std::vector<double> bone;
-  std::vector<double> land;
+//------------------------------------------------------------------------------
+void vtkLacunaImplantPlate::WarnOfBone(const std::vector<double>& thickness)
+{
   std::string unmeasured;
-  for (std::size_t k = 0; k < plate.Holes.size(); ++k)
+  for (std::size_t k = 0; k < thickness.size(); ++k)
   {
-    const lacuna::PlateHole& hole = plate.Holes[k];
-    Append(centers, toWorld.Point(hole.Centre));
-    Append(axes, lacuna::Normalized(toWorld.Vector(hole.Axis)));
-    land.push_back(hole.Land);
-    bone.push_back(GetBoneThickness(map, part, hole));
-    if (bone.back() < this->MinimumBoneThickness)
+    const double bone = thickness[k];
+    if (bone < this->MinimumBoneThickness)
     {
-      const std::string found = bone.back() == 0
+      const std::string found = bone == 0
         ? "lies over the defect, where there is no bone for a screw"
-        : "lies over bone only " + lacuna::FormatNumber(std::round(100 * bone.back()) / 100) +
+        : "lies over bone only " + lacuna::FormatNumber(std::round(100 * bone) / 100) +
           " mm thick (MinimumBoneThickness is " + lacuna::FormatNumber(this->MinimumBoneThickness) +
           " mm)";
       vtkWarningMacro(<< "screw hole " << k + 1 << " " << found);
     }
-    if (std::isnan(bone.back()))
+    if (std::isnan(bone))
     {
       unmeasured += (unmeasured.empty() ? "" : ", ") + std::to_string(k + 1);
     }
@@ -279,27 +322,33 @@ void vtkLacunaImplantPlate::Make(const lacuna::Ports& ports, lacuna::AlgorithmEx
                        "ComputeThickness of B-Spline Iso Ray Caster, or MinimumBoneThickness 0 "
                        "not to be told");
   }
-  constexpr double NaN = std::numeric_limits<double>::quiet_NaN();
-  const bool isMeasured = std::isfinite(plate.MinimumThickness); // else all of it is edge
-  const lacuna::Vec3 tightest = std::isfinite(plate.MinimumRadius)
-    ? toWorld.Point(plate.MinimumRadiusPoint)
-    : lacuna::Vec3{ NaN, NaN, NaN };
-  lacuna::FieldData::Set(output, "Volume", { plate.Volume }, 1);
-  lacuna::FieldData::Set(output, "Mass", { plate.Volume * this->Density / 1000 }, 1);
-  lacuna::FieldData::Set(output, "OuterArea", { plate.OuterArea }, 1);
-  lacuna::FieldData::Set(output, "OutlineLength", { plate.Outline.Length }, 1);
-  lacuna::FieldData::Set(
-    output, "MinimumThickness", { isMeasured ? plate.MinimumThickness : NaN }, 1);
-  lacuna::FieldData::Set(
-    output, "MinimumCurvatureRadius", { isMeasured ? plate.MinimumRadius : NaN }, 1);
-  lacuna::FieldData::Set(output, "TightestPoint", { tightest[0], tightest[1], tightest[2] }, 3);
-  lacuna::FieldData::Set(output, "HoleCenters", centers, 3);
-  lacuna::FieldData::Set(output, "HoleAxes", axes, 3);
-  lacuna::FieldData::Set(output, "HoleBoneThickness", bone, 1);
-  lacuna::FieldData::Set(output, "HoleLand", land, 1);
-  lacuna::FieldData::Set(
-    output, "DrainageHoleCount", { static_cast<double>(plate.DrainageHoles) }, 1);
+}
 
+//------------------------------------------------------------------------------
+void vtkLacunaImplantPlate::Make(const lacuna::Ports& ports, lacuna::AlgorithmExecution& execution)
+{
+  auto* map = ports.GetInput<vtkImageData>();
+  auto* output = ports.GetOutput<vtkPolyData>();
+  this->CheckProperties();
+  const lacuna::FittedPart part(map, "a plate");
+  lacuna::ImplantPlateOptions options = this->GetOptions(part);
+  const std::vector<lacuna::Vec3> holes = this->GetHoles(ports.GetInput<vtkPointSet>(1));
+  const lacuna::Matrix4 toPart = part.ToWorld.Inverse();
+  for (const lacuna::Vec3& p : holes)
+  {
+    options.HolePoints.push_back(toPart.Point(p));
+  }
+
+  const lacuna::ImplantPlate plate = this->MakePlate(part, options, execution);
+  lacuna::SolidMesh::Set(output, plate, part.ToWorld, PlateFaceName);
+  std::vector<double> bone;
+  for (const lacuna::PlateHole& hole : plate.Holes)
+  {
+    bone.push_back(GetBoneThickness(map, part, hole));
+  }
+  this->WarnOfBone(bone);
+  SetMeasures(output, plate, this->Density, part.ToWorld);
+  SetHoles(output, plate, bone, part.ToWorld);
   this->Drilled.clear();
   for (const lacuna::Vec3& p : holes)
   {

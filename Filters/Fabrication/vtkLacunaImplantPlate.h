@@ -56,6 +56,16 @@
 #include <array>  // for ivar
 #include <vector> // for ivar
 
+class vtkPointSet;
+
+namespace lacuna
+{
+struct FittedPart;
+struct ImplantPlate;
+struct ImplantPlateOptions;
+struct Vec3;
+}
+
 class VTKLACUNAFILTERSFABRICATION_EXPORT vtkLacunaImplantPlate
   : public vtkLacunaAlgorithmOf(vtkPolyDataAlgorithm)
 {
@@ -183,6 +193,14 @@ protected:
 private:
   vtkLacunaImplantPlate(const vtkLacunaImplantPlate&) = delete;
   void operator=(const vtkLacunaImplantPlate&) = delete;
+
+  void CheckProperties() const;
+  lacuna::ImplantPlateOptions GetOptions(const lacuna::FittedPart& part) const; // without holes
+  std::vector<lacuna::Vec3> GetHoles(vtkPointSet* marks) const;                 // in world mm
+  // With triangles so small that the plate is thick enough, unless their size is given.
+  lacuna::ImplantPlate MakePlate(const lacuna::FittedPart& part,
+    lacuna::ImplantPlateOptions& options, lacuna::AlgorithmExecution& execution);
+  void WarnOfBone(const std::vector<double>& thickness); // under the screw holes
 
   double Thickness = 3;
   int Side = Inward;

@@ -172,6 +172,25 @@ void SetMap(vtkPolyData* output, const lacuna::LeftOverMap& map)
   lacuna::Arrays::SetTriangles(output, corners);
 }
 
+void SetNumbers(vtkPolyData* output, const char* name, const std::vector<double>& values)
+{
+  lacuna::FieldData::Set(output, name, values, static_cast<int>(values.size()));
+}
+
+void SetMeasures(vtkPolyData* output, const lacuna::ToolPath& path, const Totals& totals,
+  const lacuna::LeftOverMap& map)
+{
+  SetNumbers(output, "StepOver", { path.SmallestStepOver, path.LargestStepOver });
+  SetNumbers(output, "StockTop", { path.StockTop });
+  SetNumbers(output, "SafeZ", { path.SafeZ });
+  SetNumbers(output, "Levels", { static_cast<double>(path.Levels) });
+  SetNumbers(output, "Positions", { totals.Positions });
+  SetNumbers(output, "PathLength", { totals.Cutting, totals.All });
+  SetNumbers(output, "MachiningTime", { totals.Time });
+  SetNumbers(output, "LargestLeftOver", { map.LargestLeftOver });
+  SetNumbers(output, "LargestGouge", { map.LargestGouge });
+}
+
 //------------------------------------------------------------------------------
 // What to say of places where the tool does not fit; empty when it does.
 std::string DescribeUnreachable(const lacuna::LeftOverMap& map, double radius, double limit)
@@ -303,32 +322,8 @@ std::string vtkLacunaMillingToolPath::Parameters(int) const
 }
 
 //------------------------------------------------------------------------------
-void vtkLacunaMillingToolPath::Make(
-  const lacuna::Ports& ports, lacuna::AlgorithmExecution& execution)
+lacuna::ToolPathOptions vtkLacunaMillingToolPath::GetOptions() const
 {
-  auto* grid = ports.GetInput<vtkStructuredGrid>();
-  this->CheckProperties();
-  lacuna::FieldData::Find(grid, PressToPatientName, 16, 1);
-  const std::string elsewhere = lacuna::PressPosition::Check(grid);
-  const bool moved = !elsewhere.empty();
-  auto told = vtkSmartPointer<vtkStringArray>::New();
-  told->SetName(WarningsName);
-  const auto warn = [this, &told](const std::string& warning)
-  {
-    vtkWarningMacro(<< warning);
-    told->InsertNextValue(warning);
-  };
-  if (moved)
-  {
-    warn(elsewhere);
-  }
-  if (lacuna::Mirrored::IsMarked(grid))
-  {
-    vtkWarningMacro("the surface is a mirror image of the patient (field data Mirrored), and so is "
-                    "what is milled with this path");
-  }
-  lacuna::GridLayer layer(grid);
-  const lacuna::MillSurface surface(layer.Size, std::move(layer.Points));
   lacuna::ToolPathOptions options;
   options.Tool = { static_cast<lacuna::ToolShape>(this->ToolShape), this->ToolRadius };
   options.StepOver = this->StepOver;
@@ -345,6 +340,46 @@ void vtkLacunaMillingToolPath::Make(
   options.StockTop = this->StockTop;
   options.SafeHeight = this->SafeHeight;
   options.LeadRadius = this->LeadRadius;
+  return options;
+}
+
+//------------------------------------------------------------------------------
+double vtkLacunaMillingToolPath::GetBorderLimit(double stepOver) const
+{
+  const double r = this->ToolRadius;
+  // what a dense path leaves on steep slopes, and so at borders, too
+  const double half2 = std::max(0.0, r * r - 0.25 * stepOver * stepOver); // it may be 2 r and a bit
+  const double steep = this->ToolShape == Ball ? 4 * (r - std::sqrt(half2)) : stepOver;
+  return this->LeftOverLimit + steep;
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaMillingToolPath::Make(
+  const lacuna::Ports& ports, lacuna::AlgorithmExecution& execution)
+{
+  auto* grid = ports.GetInput<vtkStructuredGrid>();
+  this->CheckProperties();
+  lacuna::FieldData::Find(grid, PressToPatientName, 16, 1);
+  auto told = vtkSmartPointer<vtkStringArray>::New();
+  told->SetName(WarningsName);
+  const auto warn = [this, &told](const std::string& warning)
+  {
+    if (!warning.empty())
+    {
+      vtkWarningMacro(<< warning);
+      told->InsertNextValue(warning);
+    }
+  };
+  const std::string elsewhere = lacuna::PressPosition::Check(grid);
+  warn(elsewhere);
+  if (lacuna::Mirrored::IsMarked(grid))
+  {
+    vtkWarningMacro("the surface is a mirror image of the patient (field data Mirrored), and so is "
+                    "what is milled with this path");
+  }
+  lacuna::GridLayer layer(grid);
+  const lacuna::MillSurface surface(layer.Size, std::move(layer.Points));
+  const lacuna::ToolPathOptions options = this->GetOptions();
   execution.SetStage(0, 0.5);
   const lacuna::ToolPath path = lacuna::MakeToolPath(execution, surface, options);
   std::for_each(path.Warnings.begin(), path.Warnings.end(), warn);
@@ -358,24 +393,11 @@ void vtkLacunaMillingToolPath::Make(
                     << " mm would take more points than the map "
                     << "may have; they are up to " << map.Spacing << " mm apart");
   }
-  const std::string unreachable = DescribeUnreachable(map, this->ToolRadius, this->LeftOverLimit);
-  if (!unreachable.empty())
-  {
-    warn(unreachable);
-  }
+  warn(DescribeUnreachable(map, this->ToolRadius, this->LeftOverLimit));
   if (this->Finishing)
   {
-    const double s = path.LargestStepOver;
-    const double r = this->ToolRadius;
-    // what a dense path leaves on steep slopes, and so at borders, too
-    const double half2 = std::max(0.0, r * r - 0.25 * s * s); // s may be 2 r and a bit
-    const double steep = this->ToolShape == Ball ? 4 * (r - std::sqrt(half2)) : s;
-    const std::string border =
-      DescribeBorder(map, this->LeftOverLimit + steep, this->Overrun >= this->ToolRadius);
-    if (!border.empty())
-    {
-      warn(border);
-    }
+    const bool isBeyond = this->Overrun >= this->ToolRadius;
+    warn(DescribeBorder(map, this->GetBorderLimit(path.LargestStepOver), isBeyond));
   }
 
   auto* lines = ports.GetOutput<vtkPolyData>();
@@ -386,24 +408,14 @@ void vtkLacunaMillingToolPath::Make(
   for (vtkPolyData* output : { lines, left })
   {
     output->GetFieldData()->ShallowCopy(grid->GetFieldData());
-    const auto set = [output](const char* name, const std::vector<double>& values)
-    { lacuna::FieldData::Set(output, name, values, static_cast<int>(values.size())); };
     output->GetFieldData()->RemoveArray(WarningsName); // those of Press Orientation
     output->GetFieldData()->AddArray(told);
-    set("ToolShape", { static_cast<double>(this->ToolShape) });
-    set("ToolRadius", { this->ToolRadius });
-    set("SpindleSpeed", { this->SpindleSpeed });
-    set("StepOver", { path.SmallestStepOver, path.LargestStepOver });
-    set("StockTop", { path.StockTop });
-    set("SafeZ", { path.SafeZ });
-    set("Levels", { static_cast<double>(path.Levels) });
-    set("Positions", { totals.Positions });
-    set("PathLength", { totals.Cutting, totals.All });
-    set("MachiningTime", { totals.Time });
-    set("LargestLeftOver", { map.LargestLeftOver });
-    set("LargestGouge", { map.LargestGouge });
+    SetNumbers(output, "ToolShape", { static_cast<double>(this->ToolShape) });
+    SetNumbers(output, "ToolRadius", { this->ToolRadius });
+    SetNumbers(output, "SpindleSpeed", { this->SpindleSpeed });
+    SetMeasures(output, path, totals, map);
     lacuna::PressPosition::Record(output);
-    if (moved)
+    if (!elsewhere.empty())
     {
       MarkMoved(output, lacuna::PressPosition::FindMove(grid)->Way);
     }

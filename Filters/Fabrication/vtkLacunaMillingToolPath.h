@@ -56,6 +56,11 @@
 
 #include <string> // for parameters
 
+namespace lacuna
+{
+struct ToolPathOptions;
+}
+
 class VTKLACUNAFILTERSFABRICATION_EXPORT vtkLacunaMillingToolPath
   : public vtkLacunaAlgorithmOf(vtkPolyDataAlgorithm)
 {
@@ -215,6 +220,9 @@ private:
   void operator=(const vtkLacunaMillingToolPath&) = delete;
 
   void CheckProperties() const;
+  lacuna::ToolPathOptions GetOptions() const;
+  // mm that may be left at the border; more is warned of.
+  double GetBorderLimit(double stepOver) const;
 
   int ToolShape = Ball;
   double ToolRadius = 4;

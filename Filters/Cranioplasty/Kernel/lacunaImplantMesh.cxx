@@ -249,9 +249,25 @@ double TextPlace::GetDistance(const Vec2& p) const
 }
 
 //------------------------------------------------------------------------------
-TextPlace PlaceText(const ImplantSlab& slab, const ImplantRim& rim,
-  const std::vector<Loop>& outline, const std::vector<Loop>& text, const Vec3& up,
-  double leastThickness)
+Vec2 TextPlace::At(double x, double y) const
+{
+  // seen from within, right is the other way than from outside
+  return { this->Middle[0] - x * this->Up[1] + y * this->Up[0],
+    this->Middle[1] + x * this->Up[0] + y * this->Up[1] };
+}
+
+//------------------------------------------------------------------------------
+namespace
+{
+// The rectangle around text, mm as read.
+struct TextBox
+{
+  Vec2 Middle;
+  double HalfWidth;
+  double HalfHeight;
+};
+
+TextBox FindBox(const std::vector<Loop>& text)
 {
   Vec2 low{ std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity() };
   Vec2 high{ -low[0], -low[1] };
@@ -266,88 +282,170 @@ TextPlace PlaceText(const ImplantSlab& slab, const ImplantRim& rim,
       }
     }
   }
-  const double halfWidth = 0.5 * (high[0] - low[0]);
-  const double halfHeight = 0.5 * (high[1] - low[1]);
+  return { { 0.5 * (low[0] + high[0]), 0.5 * (low[1] + high[1]) }, 0.5 * (high[0] - low[0]),
+    0.5 * (high[1] - low[1]) };
+}
+
+// A direction in space as one in the chart, about, on the inner surface.
+Vec2 FindUp(const ImplantSlab& slab, const Vec2& p, const Vec3& up)
+{
+  constexpr double h = 0.1;
+  const Vec3 x = slab.GetPoint(p, 1);
+  const Vec2 slope{ Dot(up, slab.GetPoint({ p[0] + h, p[1] }, 1) - x),
+    Dot(up, slab.GetPoint({ p[0], p[1] + h }, 1) - x) };
+  const double length = std::hypot(slope[0], slope[1]);
+  return length > 1e-6 ? Vec2{ slope[0] / length, slope[1] / length } : Vec2{ 0, 1 };
+}
+
+// The rectangle around a middle that text of a box fills.
+TextPlace MakePlace(const ImplantSlab& slab, const Vec2& middle, const TextBox& box, const Vec3& up)
+{
+  TextPlace place;
+  place.Middle = middle;
+  place.Up = FindUp(slab, middle, up);
+  // the chart's mm are those of the outer surface, about
+  const auto stretch = [&](double x, double y)
+  { return Norm(slab.GetPoint(place.At(x, y), 1) - slab.GetPoint(place.At(-x, -y), 1)) / 2; };
+  place.HalfWidth = box.HalfWidth / stretch(1, 0);
+  place.HalfHeight = box.HalfHeight / stretch(0, 1);
+  return place;
+}
+
+// mm from text in a place to the rim, -1 where the implant is too thin. It stops when this is not above enough.
+double FindRoom(const ImplantSlab& slab, const ImplantRim& rim, const TextPlace& place,
+  double leastThickness, double enough)
+{
+  double least = 1e3;
+  constexpr int steps = 12;
+  for (int i = -steps; i <= steps && least > enough; ++i)
+  {
+    for (const int j : { -1, 0, 1 })
+    {
+      const Vec2 p = place.At(place.HalfWidth * i / steps, place.HalfHeight * j);
+      const bool isThick = slab.Covers(p) &&
+        Norm(slab.GetPoint(p, 0) - slab.GetPoint(p, 1)) >= leastThickness + EngravedDepth;
+      least = isThick ? std::min(least, rim.FindInner(p, 1e3)) : -1;
+    }
+  }
+  return least;
+}
+
+// Text in its place, what is engraved on the left of each loop.
+std::vector<Loop> Lay(const std::vector<Loop>& text, const TextBox& box, const TextPlace& place)
+{
+  std::vector<Loop> laid;
+  for (const Loop& loop : text)
+  {
+    laid.emplace_back();
+    for (const Vec2& p : loop)
+    {
+      laid.back().push_back(place.At((p[0] - box.Middle[0]) * place.HalfWidth / box.HalfWidth,
+        (p[1] - box.Middle[1]) * place.HalfHeight / box.HalfHeight));
+    }
+  }
+  for (std::size_t k = 0; k < laid.size(); ++k)
+  {
+    std::vector<Loop> others = laid;
+    others.erase(others.begin() + static_cast<std::ptrdiff_t>(k));
+    const bool isHollow = IsInside(others, laid[k][0]); // within an odd number of others
+    if ((SignedArea(laid[k]) > 0) == isHollow)
+    {
+      std::reverse(laid[k].begin(), laid[k].end());
+    }
+  }
+  return laid;
+}
+}
+
+//------------------------------------------------------------------------------
+TextPlace PlaceText(const ImplantSlab& slab, const ImplantRim& rim,
+  const std::vector<Loop>& outline, const std::vector<Loop>& text, const Vec3& up,
+  double leastThickness)
+{
   TextPlace best;
   if (text.empty() || outline.empty())
   {
     return best;
   }
-  const auto upAt = [&](const Vec2& p)
-  {
-    constexpr double h = 0.1;
-    const Vec3 x = slab.GetPoint(p, 1);
-    const Vec2 slope{ Dot(up, slab.GetPoint({ p[0] + h, p[1] }, 1) - x),
-      Dot(up, slab.GetPoint({ p[0], p[1] + h }, 1) - x) };
-    const double length = std::hypot(slope[0], slope[1]);
-    return length > 1e-6 ? Vec2{ slope[0] / length, slope[1] / length } : Vec2{ 0, 1 };
-  };
-  const auto at = [&](const TextPlace& place, double x, double y)
-  {
-    // seen from within, right is the other way than from outside
-    return Vec2{ place.Middle[0] - x * place.Up[1] + y * place.Up[0],
-      place.Middle[1] + x * place.Up[0] + y * place.Up[1] };
-  };
+  const TextBox box = FindBox(text);
   double most = TextToRim;
   const PlanarGrid grid = MakeGrid(outline[0], 0, TextSearch);
   for (std::int64_t node = 0; node < grid.Columns * grid.Rows; ++node)
   {
-    TextPlace place = best;
-    place.Middle = grid.GetNode(node % grid.Columns, node / grid.Columns);
-    if (rim.FindInner(place.Middle, most) < most || !IsFarInside(slab, place.Middle))
+    const Vec2 middle = grid.GetNode(node % grid.Columns, node / grid.Columns);
+    if (rim.FindInner(middle, most) < most || !IsFarInside(slab, middle))
     {
       continue;
     }
-    place.Up = upAt(place.Middle);
-    // the chart's mm are those of the outer surface, about
-    const auto stretch = [&](double x, double y)
-    { return Norm(slab.GetPoint(at(place, x, y), 1) - slab.GetPoint(at(place, -x, -y), 1)) / 2; };
-    place.HalfWidth = halfWidth / stretch(1, 0);
-    place.HalfHeight = halfHeight / stretch(0, 1);
-    double least = 1e3;
-    constexpr int steps = 12;
-    for (int i = -steps; i <= steps && least > most; ++i)
+    const TextPlace place = MakePlace(slab, middle, box, up);
+    const double room = FindRoom(slab, rim, place, leastThickness, most);
+    if (room > most)
     {
-      for (const int j : { -1, 0, 1 })
-      {
-        const Vec2 p = at(place, place.HalfWidth * i / steps, place.HalfHeight * j);
-        const bool isThick = slab.Covers(p) &&
-          Norm(slab.GetPoint(p, 0) - slab.GetPoint(p, 1)) >= leastThickness + EngravedDepth;
-        least = isThick ? std::min(least, rim.FindInner(p, 1e3)) : -1;
-      }
-    }
-    if (least > most)
-    {
-      most = least;
+      most = room;
       best = place;
       best.IsGood = true;
     }
   }
-  if (!best.IsGood)
+  if (best.IsGood)
   {
-    return best;
-  }
-  const Vec2 middle{ 0.5 * (low[0] + high[0]), 0.5 * (low[1] + high[1]) };
-  for (const Loop& loop : text)
-  {
-    best.Text.emplace_back();
-    for (const Vec2& p : loop)
-    {
-      best.Text.back().push_back(at(best, (p[0] - middle[0]) * best.HalfWidth / halfWidth,
-        (p[1] - middle[1]) * best.HalfHeight / halfHeight));
-    }
-  }
-  for (std::size_t k = 0; k < best.Text.size(); ++k)
-  {
-    std::vector<Loop> others = best.Text;
-    others.erase(others.begin() + static_cast<std::ptrdiff_t>(k));
-    const bool isHollow = IsInside(others, best.Text[k][0]); // within an odd number of others
-    if ((SignedArea(best.Text[k]) > 0) == isHollow)
-    {
-      std::reverse(best.Text[k].begin(), best.Text[k].end());
-    }
+    best.Text = Lay(text, box, best);
   }
   return best;
+}
+
+//------------------------------------------------------------------------------
+namespace
+{
+// The least thickness of the bone around a direction, 0 where there is none. outer: the radius of its outer table.
+double FindThickness(const SkullRays& rays, const Vec3& direction, double reach, double& outer)
+{
+  double least = std::numeric_limits<double>::infinity();
+  double nearest = std::cos(reach);
+  for (std::size_t i = 0; i < rays.Directions.size(); ++i)
+  {
+    const double cosine = Dot(rays.Directions[i], direction);
+    if (cosine >= std::cos(reach))
+    {
+      const double thickness = rays.Outer[i] - rays.Inner[i];
+      least = thickness > 0 ? std::min(least, thickness) : 0; // NaN: there is no bone
+      if (cosine >= nearest)
+      {
+        nearest = cosine;
+        outer = rays.Outer[i];
+      }
+    }
+  }
+  return least < MostBoneThickness ? least : 0;
+}
+
+struct PlateCandidate
+{
+  ImplantPlateScrews Screws;
+  std::size_t Number; // of the place along the rim
+};
+
+// For a part of the rim, in places: the candidate nearest to its middle whose bone is as thick as screws are long, else
+// the one with the thickest bone. Null: there is none.
+const PlateCandidate* ChoosePlate(
+  const std::vector<PlateCandidate>& candidates, double middle, double length, double screwLength)
+{
+  const PlateCandidate* best = nullptr;
+  const auto offOf = [&](const PlateCandidate& c)
+  { return std::abs(static_cast<double>(c.Number) - middle); };
+  for (const PlateCandidate& c : candidates)
+  {
+    if (offOf(c) > 0.3 * length) // plates keep apart
+    {
+      continue;
+    }
+    const bool isThick = c.Screws.BoneThickness >= screwLength;
+    const bool wasThick = best && best->Screws.BoneThickness >= screwLength;
+    const bool isBetter = !best || (isThick && (!wasThick || offOf(c) < offOf(*best))) ||
+      (!isThick && !wasThick && c.Screws.BoneThickness > best->Screws.BoneThickness);
+    best = isBetter ? &c : best;
+  }
+  return best;
+}
 }
 
 //------------------------------------------------------------------------------
@@ -361,33 +459,7 @@ std::vector<ImplantPlateScrews> PlacePlates(const ImplantSlab& slab, const Skull
     return plates;
   }
   const ImplantRim rim(slab, levels);
-  const double area = ScrewArea / chart.GetScale(); // radians
-  const auto thicknessAt = [&](const Vec3& direction, double& outer)
-  {
-    double least = std::numeric_limits<double>::infinity();
-    double nearest = std::cos(area);
-    for (std::size_t i = 0; i < rays.Directions.size(); ++i)
-    {
-      const double cosine = Dot(rays.Directions[i], direction);
-      if (cosine >= std::cos(area))
-      {
-        const double thickness = rays.Outer[i] - rays.Inner[i];
-        least = thickness > 0 ? std::min(least, thickness) : 0; // NaN: there is no bone
-        if (cosine >= nearest)
-        {
-          nearest = cosine;
-          outer = rays.Outer[i];
-        }
-      }
-    }
-    return least < MostBoneThickness ? least : 0;
-  };
-  struct Candidate
-  {
-    ImplantPlateScrews Screws;
-    std::size_t Number;
-  };
-  std::vector<Candidate> candidates;
+  std::vector<PlateCandidate> candidates;
   const std::vector<RimPlace> places = WalkRim(levels[0][0], PlateSearch);
   for (std::size_t k = 0; k < places.size(); ++k)
   {
@@ -401,7 +473,7 @@ std::vector<ImplantPlateScrews> PlacePlates(const ImplantSlab& slab, const Skull
     const Vec3 direction = chart.ToDirection({ places[k].Foot[0] + beyond * places[k].Out[0],
       places[k].Foot[1] + beyond * places[k].Out[1] });
     double outer = 0;
-    screws.BoneThickness = thicknessAt(direction, outer);
+    screws.BoneThickness = FindThickness(rays, direction, ScrewArea / chart.GetScale(), outer);
     if (screws.BoneThickness > 0)
     {
       screws.OnImplant = slab.GetPoint(screws.Foot, 0);
@@ -412,22 +484,8 @@ std::vector<ImplantPlateScrews> PlacePlates(const ImplantSlab& slab, const Skull
   const double share = static_cast<double>(places.size()) / options.Plates;
   for (int plate = 0; plate < options.Plates; ++plate)
   {
-    const Candidate* best = nullptr;
-    const auto offOf = [&](const Candidate& c)
-    { return std::abs(static_cast<double>(c.Number) - (plate + 0.5) * share); };
-    for (const Candidate& c : candidates)
-    {
-      if (offOf(c) > 0.3 * share) // plates keep apart
-      {
-        continue;
-      }
-      const bool isThick = c.Screws.BoneThickness >= options.ScrewLength;
-      const bool wasThick = best && best->Screws.BoneThickness >= options.ScrewLength;
-      const bool isBetter = !best || (isThick && (!wasThick || offOf(c) < offOf(*best))) ||
-        (!isThick && !wasThick && c.Screws.BoneThickness > best->Screws.BoneThickness);
-      best = isBetter ? &c : best;
-    }
-    if (best)
+    if (const PlateCandidate* best =
+          ChoosePlate(candidates, (plate + 0.5) * share, share, options.ScrewLength))
     {
       plates.push_back(best->Screws);
     }

@@ -60,6 +60,8 @@ struct TextPlace
   std::vector<Loop> Text; ///< in the chart: what is engraved is on the left
   /// mm from the rectangle, 0 within.
   double GetDistance(const Vec2& p) const;
+  /// mm of the chart from the middle, as the text is read: x to the right, y up.
+  Vec2 At(double x, double y) const;
 };
 
 /// The place of text (loops, mm, as read: x to the right, y up) that is farthest from the rim. It can be read from within,

@@ -117,13 +117,232 @@ void Stretch(std::vector<double>& values, const std::vector<int>& open,
   }
 }
 
-struct Weighted
+// The tables of bone along rays, in parts of the ellipsoid's radius.
+struct Tables
 {
-  double Sum = 0;
-  double Missing = 0; // of it, of rays without known bone
-  double Outer = 0;
-  double Inner = 0;
+  std::vector<double> Sizes; // of the ellipsoid, mm; NaN where it is open
+  std::vector<std::uint8_t> Roles;
+  std::vector<double> Outer;
+  std::vector<double> Inner;
+
+  bool AreClosed(const std::vector<int>& rays) const
+  {
+    return std::none_of(
+      rays.begin(), rays.end(), [&](int i) { return std::isnan(this->Sizes[i]); });
+  }
+  void SetRole(const std::vector<int>& rays, Role role)
+  {
+    for (const int i : rays)
+    {
+      this->Roles[i] = std::max<std::uint8_t>(this->Roles[i], role);
+    }
+  }
 };
+
+// Of the ellipsoid that fits sound bone; no ray has a role yet.
+Tables MakeTables(const SkullRays& rays)
+{
+  const std::size_t n = rays.Directions.size();
+  std::vector<Vec3> sound;
+  for (std::size_t i = 0; i < n; ++i)
+  {
+    if (rays.Kinds[i] == SkullRayKind::Sound)
+    {
+      sound.push_back(rays.Center + rays.Outer[i] * rays.Directions[i]);
+    }
+  }
+  const SkullEllipsoid ellipsoid(rays.Center, sound);
+  Tables tables;
+  tables.Sizes.reserve(n);
+  for (const Vec3& direction : rays.Directions)
+  {
+    tables.Sizes.push_back(ellipsoid.GetRadius(direction));
+  }
+  tables.Roles.assign(n, Beside);
+  tables.Outer.assign(n, 0);
+  tables.Inner.assign(n, 0);
+  return tables;
+}
+
+// Whether a hole is in the vault, and no circle of the diameter fits into it.
+bool IsSmallInVault(const SkullRays& rays, const Tables& tables, const std::vector<int>& hole,
+  const Surroundings& near, double diameter)
+{
+  const auto sound = std::count_if(near.Bone.begin(), near.Bone.end(),
+    [&](int i) { return rays.Kinds[i] == SkullRayKind::Sound; });
+  return !near.IsAtEnd && !near.Bone.empty() &&
+    static_cast<double>(sound) >= LeastSound * static_cast<double>(near.Bone.size()) &&
+    !IsWide(rays, tables.Sizes, hole, near.Border, diameter) && tables.AreClosed(hole) &&
+    tables.AreClosed(near.Edge) && tables.AreClosed(near.Bone);
+}
+
+// Gives each small hole and the bone around it their roles, and the hole the mean of its border's tables.
+void MarkHoles(const SkullRays& rays, const std::vector<std::vector<int>>& around, double diameter,
+  Tables& tables)
+{
+  std::vector<int> seen(rays.Directions.size(), -1);
+  int stamp = 0;
+  const int edge = static_cast<int>(std::ceil(rays.RoundedEdge / (rays.Spacing * TypicalRadius)));
+  for (const std::vector<int>& hole :
+    FindParts(around, [&](int i) { return rays.Kinds[i] == SkullRayKind::Open; }))
+  {
+    const Surroundings near = LookAround(rays, around, hole, edge, seen, stamp++);
+    if (!IsSmallInVault(rays, tables, hole, near, diameter))
+    {
+      continue;
+    }
+    tables.SetRole(hole, Hole);
+    tables.SetRole(near.Edge, Rounded);
+    tables.SetRole(near.Bone, Known);
+    std::array<double, 2> mean{ 0, 0 };
+    for (const int i : near.Border)
+    {
+      const double size = tables.Sizes[i] * static_cast<double>(near.Border.size());
+      mean[0] += rays.Outer[i] / size;
+      mean[1] += rays.Inner[i] / size;
+    }
+    for (const int i : hole)
+    {
+      tables.Outer[i] = mean[0];
+      tables.Inner[i] = mean[1];
+    }
+  }
+}
+
+// Both tables as membranes across the holes and their rounded edges.
+void StretchAcross(
+  const SkullRays& rays, const std::vector<std::vector<int>>& around, Tables& tables)
+{
+  std::vector<int> open;
+  for (std::size_t i = 0; i < tables.Roles.size(); ++i)
+  {
+    const std::uint8_t role = tables.Roles[i];
+    if (role >= Rounded)
+    {
+      open.push_back(static_cast<int>(i));
+    }
+    if (role == Known || role == Rounded)
+    {
+      tables.Outer[i] = rays.Outer[i] / tables.Sizes[i];
+      tables.Inner[i] = rays.Inner[i] / tables.Sizes[i];
+    }
+  }
+  Stretch(tables.Outer, open, around, tables.Roles);
+  Stretch(tables.Inner, open, around, tables.Roles);
+}
+
+// Voxels to which rays give their tables, the nearer the more.
+class WeightedVoxels
+{
+public:
+  WeightedVoxels(const VoxelVolume& volume, const SkullRays& rays);
+  void Add(std::size_t ray, const Tables& tables);
+  // Those to which holes gave more than bone did, in the order of their indices.
+  std::vector<BridgedVoxel> FindBridged() const;
+
+private:
+  struct Weighted
+  {
+    double Sum = 0;
+    double Missing = 0; // of it, of rays without known bone
+    double Outer = 0;
+    double Inner = 0;
+  };
+
+  const VoxelVolume& Volume;
+  const SkullRays& Rays;
+  Matrix4 ToIndex;
+  Vec3 First; // the rays' middle, in voxels
+  double Edges[3];
+  double Beyond; // mm along a ray
+  std::unordered_map<std::int64_t, Weighted> Voxels;
+};
+
+//------------------------------------------------------------------------------
+WeightedVoxels::WeightedVoxels(const VoxelVolume& volume, const SkullRays& rays)
+  : Volume(volume)
+  , Rays(rays)
+  , ToIndex(volume.IndexToWorld.Inverse())
+  , First(this->ToIndex.Point(rays.Center))
+{
+  for (int a = 0; a < 3; ++a)
+  {
+    this->Edges[a] = Norm(volume.IndexToWorld.Column(a));
+  }
+  this->Beyond = 2 * std::hypot(this->Edges[0], this->Edges[1], this->Edges[2]);
+}
+
+//------------------------------------------------------------------------------
+void WeightedVoxels::Add(std::size_t ray, const Tables& tables)
+{
+  const std::uint8_t role = tables.Roles[ray];
+  const std::array<int, 3>& size = this->Volume.Size;
+  const Vec3& direction = this->Rays.Directions[ray];
+  const Vec3 along = this->ToIndex.Vector(direction); // voxels a mm
+  double least = 0;                                   // mm
+  for (int a = 0; a < 3; ++a)
+  {
+    least += std::abs(along[a]) * this->Edges[a] * this->Edges[a];
+  }
+  const double out = tables.Sizes[ray] * tables.Outer[ray];
+  const double in =
+    std::min(tables.Sizes[ray] * tables.Inner[ray], role == Hole ? out - least : out);
+  const double width = out * this->Rays.Spacing;
+  int low[3];
+  int high[3];
+  for (int a = 0; a < 3; ++a)
+  {
+    const auto [from, to] = std::minmax({ this->First[a] + (in - this->Beyond) * along[a],
+      this->First[a] + (out + this->Beyond) * along[a] });
+    low[a] = std::max(0, static_cast<int>(std::ceil(from - 2 * width / this->Edges[a])));
+    high[a] = std::min(size[a] - 1, static_cast<int>(std::floor(to + 2 * width / this->Edges[a])));
+  }
+  for (int k = low[2]; k <= high[2]; ++k)
+  {
+    for (int j = low[1]; j <= high[1]; ++j)
+    {
+      for (int i = low[0]; i <= high[0]; ++i)
+      {
+        const Vec3 from =
+          this->Volume.IndexToWorld.Point({ 1.0 * i, 1.0 * j, 1.0 * k }) - this->Rays.Center;
+        const double r = Norm(from);
+        const double aside = Norm(from - Dot(from, direction) * direction) / width;
+        if (aside < 2 && r > in - this->Beyond && r < out + this->Beyond)
+        {
+          const double weight = std::exp(-2 * aside * aside);
+          Weighted& voxel =
+            this->Voxels[i + size[0] * (j + static_cast<std::int64_t>(size[1]) * k)];
+          voxel.Sum += weight;
+          voxel.Missing += role >= Rounded ? weight : 0;
+          voxel.Outer += weight * out;
+          voxel.Inner += weight * in;
+        }
+      }
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
+std::vector<BridgedVoxel> WeightedVoxels::FindBridged() const
+{
+  const std::array<int, 3>& size = this->Volume.Size;
+  std::vector<BridgedVoxel> bridged;
+  for (const auto& [index, voxel] : this->Voxels)
+  {
+    if (voxel.Missing > 0.5 * voxel.Sum)
+    {
+      const std::int64_t row = index / size[0];
+      const Vec3 at{ static_cast<double>(index % size[0]), static_cast<double>(row % size[1]),
+        static_cast<double>(row / size[1]) };
+      const double r = Norm(this->Volume.IndexToWorld.Point(at) - this->Rays.Center);
+      bridged.push_back(
+        { index, std::min(voxel.Outer / voxel.Sum - r, r - voxel.Inner / voxel.Sum) });
+    }
+  }
+  std::sort(bridged.begin(), bridged.end(),
+    [](const BridgedVoxel& a, const BridgedVoxel& b) { return a.Index < b.Index; });
+  return bridged;
+}
 }
 
 //------------------------------------------------------------------------------
@@ -134,157 +353,18 @@ std::vector<BridgedVoxel> BridgeHoles(
   const Vec3 center = FindSkullCenter(volume, level, none, execution);
   const double fine = std::clamp(0.75 * SmallestEdgeOf(volume.IndexToWorld), 0.6, 2.0);
   const SkullRays rays = TraceSkull(volume, level, center, fine, execution);
-  const auto n = static_cast<int>(rays.Directions.size());
   const std::vector<std::vector<int>> around = FindNeighbors(rays.Directions, 1.6 * rays.Spacing);
-  std::vector<Vec3> sound;
-  for (int i = 0; i < n; ++i)
+  Tables tables = MakeTables(rays);
+  MarkHoles(rays, around, diameter, tables);
+  StretchAcross(rays, around, tables);
+  WeightedVoxels voxels(volume, rays);
+  for (std::size_t ray = 0; ray < tables.Roles.size(); ++ray)
   {
-    if (rays.Kinds[i] == SkullRayKind::Sound)
+    if (tables.Roles[ray] != Beside)
     {
-      sound.push_back(center + rays.Outer[i] * rays.Directions[i]);
+      voxels.Add(ray, tables);
     }
   }
-  const SkullEllipsoid ellipsoid(center, sound);
-
-  std::vector<double> sizes(n); // of the ellipsoid, mm; NaN where it is open
-  for (int i = 0; i < n; ++i)
-  {
-    sizes[i] = ellipsoid.GetRadius(rays.Directions[i]);
-  }
-  const auto isClosed = [&](const std::vector<int>& which)
-  { return std::none_of(which.begin(), which.end(), [&](int i) { return std::isnan(sizes[i]); }); };
-  std::vector<std::uint8_t> roles(n, Beside);
-  std::vector<double> outer(n);
-  std::vector<double> inner(n);
-  const auto setRole = [&](const std::vector<int>& which, Role role)
-  {
-    for (const int i : which)
-    {
-      roles[i] = std::max<std::uint8_t>(roles[i], role);
-    }
-  };
-  std::vector<int> seen(n, -1);
-  int stamp = 0;
-  const int edge = static_cast<int>(std::ceil(rays.RoundedEdge / (rays.Spacing * TypicalRadius)));
-  for (const std::vector<int>& hole :
-    FindParts(around, [&](int i) { return rays.Kinds[i] == SkullRayKind::Open; }))
-  {
-    const Surroundings near = LookAround(rays, around, hole, edge, seen, stamp++);
-    const auto count = std::count_if(near.Bone.begin(), near.Bone.end(),
-      [&](int i) { return rays.Kinds[i] == SkullRayKind::Sound; });
-    if (near.IsAtEnd || near.Bone.empty() ||
-      static_cast<double>(count) < LeastSound * static_cast<double>(near.Bone.size()) ||
-      IsWide(rays, sizes, hole, near.Border, diameter) || !isClosed(hole) || !isClosed(near.Edge) ||
-      !isClosed(near.Bone))
-    {
-      continue;
-    }
-    setRole(hole, Hole);
-    setRole(near.Edge, Rounded);
-    setRole(near.Bone, Known);
-    std::array<double, 2> mean{ 0, 0 };
-    for (const int i : near.Border)
-    {
-      const double size = sizes[i] * static_cast<double>(near.Border.size());
-      mean[0] += rays.Outer[i] / size;
-      mean[1] += rays.Inner[i] / size;
-    }
-    for (const int i : hole)
-    {
-      outer[i] = mean[0];
-      inner[i] = mean[1];
-    }
-  }
-  std::vector<int> open;
-  for (int i = 0; i < n; ++i)
-  {
-    if (roles[i] >= Rounded)
-    {
-      open.push_back(i);
-    }
-    if (roles[i] == Known || roles[i] == Rounded)
-    {
-      outer[i] = rays.Outer[i] / sizes[i];
-      inner[i] = rays.Inner[i] / sizes[i];
-    }
-  }
-  Stretch(outer, open, around, roles);
-  Stretch(inner, open, around, roles);
-
-  // Each ray gives its tables to the voxels beside it, the nearer the more.
-  const Matrix4 toIndex = volume.IndexToWorld.Inverse();
-  const Vec3 first = toIndex.Point(center);
-  double edges[3];
-  for (int a = 0; a < 3; ++a)
-  {
-    edges[a] = Norm(volume.IndexToWorld.Column(a));
-  }
-  const double beside = 2 * std::hypot(edges[0], edges[1], edges[2]);
-  std::unordered_map<std::int64_t, Weighted> voxels;
-  for (int i = 0; i < n; ++i)
-  {
-    if (roles[i] == Beside)
-    {
-      continue;
-    }
-    const Vec3& direction = rays.Directions[i];
-    const Vec3 along = toIndex.Vector(direction); // voxels a mm
-    double least = 0;                             // mm
-    for (int a = 0; a < 3; ++a)
-    {
-      least += std::abs(along[a]) * edges[a] * edges[a];
-    }
-    const double out = sizes[i] * outer[i];
-    const double in = std::min(sizes[i] * inner[i], roles[i] == Hole ? out - least : out);
-    const double width = out * rays.Spacing;
-    int low[3];
-    int high[3];
-    for (int a = 0; a < 3; ++a)
-    {
-      const auto [from, to] =
-        std::minmax({ first[a] + (in - beside) * along[a], first[a] + (out + beside) * along[a] });
-      low[a] = std::max(0, static_cast<int>(std::ceil(from - 2 * width / edges[a])));
-      high[a] =
-        std::min(volume.Size[a] - 1, static_cast<int>(std::floor(to + 2 * width / edges[a])));
-    }
-    for (int k = low[2]; k <= high[2]; ++k)
-    {
-      for (int j = low[1]; j <= high[1]; ++j)
-      {
-        for (int x = low[0]; x <= high[0]; ++x)
-        {
-          const Vec3 from = volume.IndexToWorld.Point({ 1.0 * x, 1.0 * j, 1.0 * k }) - center;
-          const double r = Norm(from);
-          const double aside = Norm(from - Dot(from, direction) * direction) / width;
-          if (aside < 2 && r > in - beside && r < out + beside)
-          {
-            const double weight = std::exp(-2 * aside * aside);
-            Weighted& voxel =
-              voxels[x + volume.Size[0] * (j + static_cast<std::int64_t>(volume.Size[1]) * k)];
-            voxel.Sum += weight;
-            voxel.Missing += roles[i] >= Rounded ? weight : 0;
-            voxel.Outer += weight * out;
-            voxel.Inner += weight * in;
-          }
-        }
-      }
-    }
-  }
-  std::vector<BridgedVoxel> bridged;
-  for (const auto& [index, voxel] : voxels)
-  {
-    if (voxel.Missing > 0.5 * voxel.Sum)
-    {
-      const std::int64_t row = index / volume.Size[0];
-      const Vec3 at{ static_cast<double>(index % volume.Size[0]),
-        static_cast<double>(row % volume.Size[1]), static_cast<double>(row / volume.Size[1]) };
-      const double r = Norm(volume.IndexToWorld.Point(at) - center);
-      bridged.push_back(
-        { index, std::min(voxel.Outer / voxel.Sum - r, r - voxel.Inner / voxel.Sum) });
-    }
-  }
-  std::sort(bridged.begin(), bridged.end(),
-    [](const BridgedVoxel& a, const BridgedVoxel& b) { return a.Index < b.Index; });
-  return bridged;
+  return voxels.FindBridged();
 }
 }

@@ -497,19 +497,37 @@ double SkullResection::SmoothTable(
 }
 
 //------------------------------------------------------------------------------
-SkullImplant SkullResection::MakeGuide(Execution& execution) const
+struct SkullResection::Guide
 {
-  const double width = this->Options.GuideWidth;
+  ImplantSlab Slab;
+  double Reach = 0;                       // mm from the outline, of the slab
+  std::vector<double> Away;               // mm from the outline, of nodes, negative inside
+  std::vector<unsigned char> IsSupported; // nodes
+  double Area = 0;                        // nodes
+  double Unsupported = 0;
+  std::vector<InnerPlace> Places;
+  std::vector<std::vector<Loop>> Levels; // the outer wall, the inner wall, then holes for screws
+
+  bool IsNear(std::size_t node) const
+  {
+    return this->Away[node] >= -Beside && this->Away[node] <= this->Reach;
+  }
+};
+
+//------------------------------------------------------------------------------
+void SkullResection::FindFaces(Guide& guide, Execution& execution) const
+{
   const double height = this->Options.GuideHeight;
-  ImplantSlab slab;
-  slab.Grid = this->Grid;
+  const double lean = this->Slope * (2 * height + Beside) + Beside;
   const auto count = this->Table.size();
+  guide.Reach = this->Options.GuideWidth + lean;
+  guide.Away.assign(count, 0);
+  guide.IsSupported.assign(count, 0);
+  ImplantSlab& slab = guide.Slab;
+  slab.Grid = this->Grid;
   slab.IsKnown.assign(count, false);
   slab.Outer.assign(count, Vec3{ 0, 0, 0 });
   slab.Inner = slab.Outer;
-  std::vector<double> away(count); // from the outline, negative inside
-  std::vector<unsigned char> isSupported(count, 0);
-  const double lean = this->Slope * (2 * height + Beside) + Beside;
   execution.For(this->Grid.Rows, 2,
     [&](std::int64_t begin, std::int64_t end)
     {
@@ -519,14 +537,14 @@ SkullImplant SkullResection::MakeGuide(Execution& execution) const
         {
           const std::int64_t node = i + this->Grid.Columns * j;
           const Vec2 p = this->Grid.GetNode(i, j);
-          away[node] = -this->FindWall(p).Distance;
-          if (away[node] < -Beside || away[node] > width + lean)
+          guide.Away[node] = -this->FindWall(p).Distance;
+          if (!guide.IsNear(node))
           {
             continue;
           }
           // lying on the highest places around; where there are none, on what is farther away
           double lower = this->SmoothTable(i, j, ContactReach, true);
-          isSupported[node] = !std::isnan(lower);
+          guide.IsSupported[node] = !std::isnan(lower);
           lower = std::isnan(lower) ? this->SmoothTable(i, j, BridgedReach, false) : lower;
           const double upper = this->SmoothTable(i, j, std::isnan(lower) ? 0 : SmoothReach, false);
           const double top = std::isnan(upper) ? lower : std::max(upper, lower - 0.3 * height);
@@ -535,17 +553,21 @@ SkullImplant SkullResection::MakeGuide(Execution& execution) const
         }
       }
     });
-  double unsupported = 0;
-  double whole = 0;
+}
+
+//------------------------------------------------------------------------------
+void SkullResection::FindSupport(Guide& guide) const
+{
+  ImplantSlab& slab = guide.Slab;
   bool hasGap = false;
-  for (std::size_t node = 0; node < count; ++node)
+  for (std::size_t node = 0; node < guide.Away.size(); ++node)
   {
-    const bool isWanted = away[node] >= -Beside && away[node] <= width + lean;
-    slab.IsKnown[node] = isWanted && IsFinite(slab.Inner[node]) && IsFinite(slab.Outer[node]);
-    if (away[node] > 0 && away[node] < width)
+    slab.IsKnown[node] =
+      guide.IsNear(node) && IsFinite(slab.Inner[node]) && IsFinite(slab.Outer[node]);
+    if (guide.Away[node] > 0 && guide.Away[node] < this->Options.GuideWidth)
     {
-      whole += 1;
-      unsupported += isSupported[node] ? 0 : 1;
+      guide.Area += 1;
+      guide.Unsupported += guide.IsSupported[node] ? 0 : 1;
       hasGap = hasGap || !slab.IsKnown[node];
     }
   }
@@ -554,11 +576,17 @@ SkullImplant SkullResection::MakeGuide(Execution& execution) const
     throw std::runtime_error("no bone is below a part of the guide: make it narrower, or draw the "
                              "outline farther from holes and from the end of the scan");
   }
+}
+
+//------------------------------------------------------------------------------
+void SkullResection::FindWalls(Guide& guide) const
+{
   // the outer wall is straight, the inner one leans on with the cut
-  std::vector<double> ring(count);
-  for (std::size_t node = 0; node < count; ++node)
+  const ImplantSlab& slab = guide.Slab;
+  std::vector<double> ring(guide.Away.size());
+  for (std::size_t node = 0; node < ring.size(); ++node)
   {
-    ring[node] = slab.IsKnown[node] ? width - away[node] : -1;
+    ring[node] = slab.IsKnown[node] ? this->Options.GuideWidth - guide.Away[node] : -1;
   }
   std::vector<Loop> outside = KeepLargest(FindContours(slab.Grid, ring, 0));
   const Loop inner = Resample(this->Flat, 0.5 * GuideTriangle);
@@ -567,82 +595,103 @@ SkullImplant SkullResection::MakeGuide(Execution& execution) const
     throw std::runtime_error("the guide has no room around the cut");
   }
   outside[0] = Resample(outside[0], 0.5 * GuideTriangle);
-  std::vector<std::vector<Loop>> levels(slab.Steps + 1);
-  const std::vector<InnerPlace> places = FindInnerPlaces(inner);
+  guide.Places = FindInnerPlaces(inner);
   for (int level = 0; level <= slab.Steps; ++level)
   {
-    const double depth = slab.DepthOf(level);
-    Loop hole;
-    for (const InnerPlace& place : places)
-    {
-      const double below = this->FindWall(place.Foot).Height;
-      Vec2 p = place.Foot;
-      for (int step = 0; step < 6; ++step)
-      {
-        if (!slab.Covers(p))
-        {
-          throw std::runtime_error("the guide has no bone below all of its inner edge");
-        }
-        const double moved =
-          std::min(this->Slope * (this->HeightOf(slab.GetPoint(p, depth)) - below), place.Most);
-        p = { place.Foot[0] + moved * place.Out[0], place.Foot[1] + moved * place.Out[1] };
-      }
-      hole.push_back(p);
-    }
-    levels[level] = { outside[0], hole };
+    guide.Levels.push_back({ outside[0], this->FindInnerWall(guide, slab.DepthOf(level)) });
   }
-  SkullImplant guide;
+}
+
+//------------------------------------------------------------------------------
+Loop SkullResection::FindInnerWall(const Guide& guide, double depth) const
+{
+  Loop wall;
+  for (const InnerPlace& place : guide.Places)
+  {
+    const double below = this->FindWall(place.Foot).Height;
+    Vec2 p = place.Foot;
+    for (int step = 0; step < 6; ++step)
+    {
+      if (!guide.Slab.Covers(p))
+      {
+        throw std::runtime_error("the guide has no bone below all of its inner edge");
+      }
+      const double moved =
+        std::min(this->Slope * (this->HeightOf(guide.Slab.GetPoint(p, depth)) - below), place.Most);
+      p = { place.Foot[0] + moved * place.Out[0], place.Foot[1] + moved * place.Out[1] };
+    }
+    wall.push_back(p);
+  }
+  return wall;
+}
+
+//------------------------------------------------------------------------------
+int SkullResection::AddScrewHoles(Guide& guide) const
+{
+  const ImplantRim rim(guide.Slab, guide.Levels);
+  const std::vector<InnerPlace>& places = guide.Places;
+  const double radius = 0.5 * this->Options.GuideHole;
+  const double middle = 0.5 * (this->Options.GuideWidth + this->Slope * this->Options.GuideHeight);
+  const std::size_t quarter = places.size() / GuideHoles;
+  int made = 0;
+  for (std::size_t hole = 0; hole < GuideHoles; ++hole)
+  {
+    // in the middle of its quarter, else as near to that as there is room
+    bool isMade = false;
+    for (std::size_t off = 0; off < quarter && !isMade; ++off)
+    {
+      const std::size_t at = hole * quarter + quarter / 2 + (off + 1) / 2 * (off % 2 ? 1 : -1);
+      const InnerPlace& place = places[at % places.size()];
+      const Vec2 p{ place.Foot[0] + middle * place.Out[0], place.Foot[1] + middle * place.Out[1] };
+      Vec2 end{};
+      if (rim.Find(p, 2 * radius + LeastHoleToRim, end) < radius + 0.9 * LeastHoleToRim)
+      {
+        continue;
+      }
+      const std::vector<Loop> tunnel = FindTunnel(guide.Slab, { p, radius }, 0.5 * GuideTriangle);
+      isMade = !tunnel.empty();
+      for (std::size_t level = 0; level < tunnel.size(); ++level)
+      {
+        guide.Levels[level].push_back(tunnel[level]);
+      }
+    }
+    made += isMade ? 1 : 0;
+  }
+  return made;
+}
+
+//------------------------------------------------------------------------------
+SkullImplant SkullResection::MakeGuide(Execution& execution) const
+{
+  Guide guide;
+  this->FindFaces(guide, execution);
+  this->FindSupport(guide);
+  this->FindWalls(guide);
+  SkullImplant made;
   if (this->Options.GuideHole > 0)
   {
-    const ImplantRim rim(slab, levels);
-    const double radius = 0.5 * this->Options.GuideHole;
-    const double middle = 0.5 * (width + this->Slope * height);
-    const std::size_t quarter = places.size() / GuideHoles;
-    for (std::size_t hole = 0; hole < GuideHoles; ++hole)
+    made.Holes = this->AddScrewHoles(guide);
+    if (made.Holes < static_cast<int>(GuideHoles))
     {
-      // in the middle of its quarter, else as near to that as there is room
-      bool isMade = false;
-      for (std::size_t off = 0; off < quarter && !isMade; ++off)
-      {
-        const std::size_t at = hole * quarter + quarter / 2 + (off + 1) / 2 * (off % 2 ? 1 : -1);
-        const InnerPlace& place = places[at % places.size()];
-        const Vec2 p{ place.Foot[0] + middle * place.Out[0],
-          place.Foot[1] + middle * place.Out[1] };
-        Vec2 end{};
-        if (rim.Find(p, 2 * radius + LeastHoleToRim, end) < radius + 0.9 * LeastHoleToRim)
-        {
-          continue;
-        }
-        const std::vector<Loop> tunnel = FindTunnel(slab, { p, radius }, 0.5 * GuideTriangle);
-        isMade = !tunnel.empty();
-        for (std::size_t level = 0; level < tunnel.size(); ++level)
-        {
-          levels[level].push_back(tunnel[level]);
-        }
-      }
-      guide.Holes += isMade ? 1 : 0;
-    }
-    if (guide.Holes < static_cast<int>(GuideHoles))
-    {
-      guide.Warnings.push_back("only " + std::to_string(guide.Holes) + " of " +
+      made.Warnings.push_back("only " + std::to_string(made.Holes) + " of " +
         std::to_string(GuideHoles) +
         " holes for screws have room in the guide: make it wider, or lower");
     }
   }
-  AddImplantMesh(slab, levels, {}, GuideTriangle, execution, guide);
-  for (const Triangle& t : guide.Triangles)
+  AddImplantMesh(guide.Slab, guide.Levels, {}, GuideTriangle, execution, made);
+  for (const Triangle& t : made.Triangles)
   {
-    const Vec3& first = guide.Points[0];
-    guide.Volume += Dot(guide.Points[t[0]] - first,
-                      Cross(guide.Points[t[1]] - first, guide.Points[t[2]] - first)) /
+    const Vec3& first = made.Points[0];
+    made.Volume +=
+      Dot(made.Points[t[0]] - first, Cross(made.Points[t[1]] - first, made.Points[t[2]] - first)) /
       6;
   }
-  if (unsupported > MostUnsupported * whole)
+  if (guide.Unsupported > MostUnsupported * guide.Area)
   {
-    guide.Warnings.push_back("the guide lies on bone only for " +
-      FormatNumber(std::round(100 * (1 - unsupported / whole))) +
+    made.Warnings.push_back("the guide lies on bone only for " +
+      FormatNumber(std::round(100 * (1 - guide.Unsupported / guide.Area))) +
       " % of its area: it may tilt. Move the outline, or make the guide narrower");
   }
-  return guide;
+  return made;
 }
 }

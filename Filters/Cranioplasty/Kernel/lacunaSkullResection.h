@@ -88,6 +88,13 @@ private:
   double FindContrast(const Sampler& sample) const;
   double GetTable(const Vec2& p) const; // height of the outer table; NaN without bone
   double SmoothTable(std::int64_t i, std::int64_t j, double radius, bool isHighest) const;
+  // Steps of MakeGuide.
+  struct Guide;
+  void FindFaces(Guide& guide, Execution& execution) const;
+  void FindSupport(Guide& guide) const;
+  void FindWalls(Guide& guide) const;
+  Loop FindInnerWall(const Guide& guide, double depth) const;
+  int AddScrewHoles(Guide& guide) const; // returns for how many there is room
 
   const VoxelVolume& Volume;
   ResectionOptions Options;

@@ -440,27 +440,31 @@ Vec3 VolumeShell::GetMiddle(Execution& execution) const
 }
 
 //------------------------------------------------------------------------------
-TemplateFit FitTemplate(const SkullShell& shell, const SoundBone& bone, Execution& execution)
+namespace
 {
-  double radius = 0;
-  const Vec3 center = FindTemplateCenter(shell, radius, execution);
-  const TemplateMap map(shell, center, execution);
-  const SoundBone few = Thinned(bone, SearchRays);
+// Around the middle of the skull's sphere, as around that of the template's, which has a radius.
+Pose FindStart(const SoundBone& bone, double radius)
+{
   std::vector<Vec3> points;
   for (std::size_t i = 0; i < bone.Outer.size(); ++i)
   {
     points.push_back(bone.Center + bone.Outer[i] * bone.Directions[i]);
   }
-  // around the middle of the skull's sphere, as around that of the template's
   Pose start;
   start.Place = FindSphereMiddle(bone.Center, points);
   std::vector<double> radii;
-  for (Vec3& p : points)
+  for (const Vec3& p : points)
   {
     radii.push_back(Norm(p - start.Place));
   }
   start.Scale = MedianOf(radii) / radius;
-  const std::vector<Matrix4> turns = SpreadTurns();
+  return start;
+}
+
+// How badly the template fits in each turn.
+std::vector<double> FindLosses(const TemplateMap& map, const SoundBone& bone, const Pose& start,
+  const std::vector<Matrix4>& turns, Execution& execution)
+{
   std::vector<double> losses(turns.size());
   execution.For(static_cast<std::int64_t>(turns.size()), 16,
     [&](std::int64_t begin, std::int64_t end)
@@ -469,15 +473,22 @@ TemplateFit FitTemplate(const SkullShell& shell, const SoundBone& bone, Executio
       {
         const Matrix4 back = turns[t].Inverse();
         std::vector<double> errors;
-        for (std::size_t i = 0; i < few.Outer.size(); ++i)
+        for (std::size_t i = 0; i < bone.Outer.size(); ++i)
         {
-          const Vec3 arm = few.Center + few.Outer[i] * few.Directions[i] - start.Place;
+          const Vec3 arm = bone.Center + bone.Outer[i] * bone.Directions[i] - start.Place;
           const double length = Norm(arm);
           errors.push_back(start.Scale * map(back.Vector((1 / length) * arm)) - length);
         }
         losses[t] = TemplateSearch::Loss(errors);
       }
     });
+  return losses;
+}
+
+// The turns with the least losses that are not nearly the same.
+std::vector<Matrix4> ChooseTurns(
+  const std::vector<Matrix4>& turns, const std::vector<double>& losses)
+{
   std::vector<std::size_t> order(turns.size());
   for (std::size_t i = 0; i < order.size(); ++i)
   {
@@ -495,10 +506,15 @@ TemplateFit FitTemplate(const SkullShell& shell, const SoundBone& bone, Executio
       candidates.push_back(turn);
     }
   }
-  const TemplateSearch search(shell, center, few, execution);
+  return candidates;
+}
+
+// Improves the start in each turn a little, and returns the best.
+Pose FindBest(const TemplateSearch& search, const Pose& start, const std::vector<Matrix4>& turns)
+{
   Pose best;
   double least = std::numeric_limits<double>::infinity();
-  for (const Matrix4& turn : candidates)
+  for (const Matrix4& turn : turns)
   {
     Pose pose = start;
     pose.Turn = turn;
@@ -513,12 +529,12 @@ TemplateFit FitTemplate(const SkullShell& shell, const SoundBone& bone, Executio
       best = pose;
     }
   }
-  const SoundBone many = Thinned(bone, FitRays);
-  const TemplateSearch fit(shell, center, many, execution);
-  for (int step = 0; step < FitSteps && fit.Improve(best, LeastLimit) > Settled; ++step)
-  {
-  }
-  const std::vector<double> errors = fit.GetErrors(best);
+  return best;
+}
+
+// center: of the template. errors: in the pose.
+TemplateFit Describe(const Pose& pose, const Vec3& center, const std::vector<double>& errors)
+{
   const double limit = std::max(LeastLimit, TemplateSearch::GetLimit(errors));
   double count = 0;
   double square = 0;
@@ -532,13 +548,34 @@ TemplateFit FitTemplate(const SkullShell& shell, const SoundBone& bone, Executio
       square += e * e;
     }
   }
-  TemplateFit result;
-  result.TemplateToSkull = Matrix4::Translation(best.Place) * best.Turn *
-    Matrix4::Scaling({ best.Scale, best.Scale, best.Scale }) * Matrix4::Translation(-1 * center);
-  result.Scale = best.Scale;
-  result.RMS = std::sqrt(square / std::max(count, 1.0));
-  result.Covered = covered / static_cast<double>(errors.size());
-  return result;
+  TemplateFit fit;
+  fit.TemplateToSkull = Matrix4::Translation(pose.Place) * pose.Turn *
+    Matrix4::Scaling({ pose.Scale, pose.Scale, pose.Scale }) * Matrix4::Translation(-1 * center);
+  fit.Scale = pose.Scale;
+  fit.RMS = std::sqrt(square / std::max(count, 1.0));
+  fit.Covered = covered / static_cast<double>(errors.size());
+  return fit;
+}
+}
+
+//------------------------------------------------------------------------------
+TemplateFit FitTemplate(const SkullShell& shell, const SoundBone& bone, Execution& execution)
+{
+  double radius = 0;
+  const Vec3 center = FindTemplateCenter(shell, radius, execution);
+  const TemplateMap map(shell, center, execution);
+  const SoundBone few = Thinned(bone, SearchRays);
+  const Pose start = FindStart(bone, radius);
+  const std::vector<Matrix4> turns = SpreadTurns();
+  const std::vector<Matrix4> candidates =
+    ChooseTurns(turns, FindLosses(map, few, start, turns, execution));
+  Pose best = FindBest(TemplateSearch(shell, center, few, execution), start, candidates);
+  const SoundBone many = Thinned(bone, FitRays);
+  const TemplateSearch fit(shell, center, many, execution);
+  for (int step = 0; step < FitSteps && fit.Improve(best, LeastLimit) > Settled; ++step)
+  {
+  }
+  return Describe(best, center, fit.GetErrors(best));
 }
 
 //------------------------------------------------------------------------------

@@ -194,6 +194,47 @@ void CubicSplineFit::Factorise()
 }
 
 //------------------------------------------------------------------------------
+LACUNA_WIDE void CubicSplineFit::Substitute(std::int64_t count, double* rhs) const
+{
+  const std::int64_t size = this->Space.GetSize();
+  for (std::int64_t i = 0; i < size; ++i)
+  {
+    double* c = rhs + i * count;
+    const Row& row = this->Factor[i];
+    for (std::int64_t j = std::max<std::int64_t>(0, i - 3); j < i; ++j)
+    {
+      const double l = row[j - i + 3];
+      const double* other = rhs + j * count;
+      for (std::int64_t k = 0; k < count; ++k)
+      {
+        c[k] -= l * other[k];
+      }
+    }
+    for (std::int64_t k = 0; k < count; ++k)
+    {
+      c[k] *= row[3];
+    }
+  }
+  for (std::int64_t i = size - 1; i >= 0; --i)
+  {
+    double* c = rhs + i * count;
+    for (std::int64_t j = i + 1; j < std::min(size, i + 4); ++j)
+    {
+      const double l = this->Factor[j][i - j + 3];
+      const double* other = rhs + j * count;
+      for (std::int64_t k = 0; k < count; ++k)
+      {
+        c[k] -= l * other[k];
+      }
+    }
+    for (std::int64_t k = 0; k < count; ++k)
+    {
+      c[k] *= this->Factor[i][3];
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
 LACUNA_WIDE void CubicSplineFit::SolveBlock(const double* samples, std::int64_t width,
   std::int64_t first, std::int64_t count, int refinements, double* work, double* coefficients) const
 {
@@ -231,41 +272,7 @@ LACUNA_WIDE void CubicSplineFit::SolveBlock(const double* samples, std::int64_t 
         }
       }
     }
-    for (std::int64_t i = 0; i < size; ++i)
-    {
-      double* c = rhs + i * count;
-      const Row& row = this->Factor[i];
-      for (std::int64_t j = std::max<std::int64_t>(0, i - 3); j < i; ++j)
-      {
-        const double l = row[j - i + 3];
-        const double* other = rhs + j * count;
-        for (std::int64_t k = 0; k < count; ++k)
-        {
-          c[k] -= l * other[k];
-        }
-      }
-      for (std::int64_t k = 0; k < count; ++k)
-      {
-        c[k] *= row[3];
-      }
-    }
-    for (std::int64_t i = size - 1; i >= 0; --i)
-    {
-      double* c = rhs + i * count;
-      for (std::int64_t j = i + 1; j < std::min(size, i + 4); ++j)
-      {
-        const double l = this->Factor[j][i - j + 3];
-        const double* other = rhs + j * count;
-        for (std::int64_t k = 0; k < count; ++k)
-        {
-          c[k] -= l * other[k];
-        }
-      }
-      for (std::int64_t k = 0; k < count; ++k)
-      {
-        c[k] *= this->Factor[i][3];
-      }
-    }
+    this->Substitute(count, rhs);
     if (pass > 0)
     {
       for (std::int64_t k = 0; k < size * count; ++k)

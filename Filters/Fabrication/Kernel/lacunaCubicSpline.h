@@ -80,6 +80,8 @@ public:
 private:
   using Row = std::array<double, 4>;
   void Factorise();
+  /// Solves L Lt x = rhs in place, for so many right sides.
+  void Substitute(std::int64_t count, double* rhs) const;
   /// work: (size of the space + 1) count numbers.
   void SolveBlock(const double* samples, std::int64_t width, std::int64_t first, std::int64_t count,
     int refinements, double* work, double* coefficients) const;

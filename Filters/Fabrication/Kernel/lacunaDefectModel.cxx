@@ -215,11 +215,17 @@ private:
     return within ? i + this->Scene.Size.Columns * j : -1;
   }
 
-  // The floor at every point of the outlines and every pixel within; then the base, and what lies
-  // deeper than it is lifted onto it.
   void ChooseFloor()
   {
     this->FindInside();
+    this->FindHighest();
+    this->FindFloor();
+    this->ChooseBase();
+    this->LiftTop();
+  }
+
+  void FindHighest()
+  {
     this->Model.Highest = std::numeric_limits<double>::infinity();
     for (std::size_t k = 0; k < this->Model.Top.size(); ++k)
     {
@@ -228,6 +234,11 @@ private:
         this->Model.Highest = std::min(this->Model.Highest, this->Model.Top[k]);
       }
     }
+  }
+
+  // The floor at every point of the outlines and every pixel within, DefectDepth below the fit.
+  void FindFloor()
+  {
     std::vector<Vec2> places;
     for (const Loop& outline : this->Outlines)
     {
@@ -266,6 +277,11 @@ private:
         "), where the fit bends more sharply or is too steep; make DefectDepth smaller, or "
         "FloorShape Flat");
     }
+  }
+
+  // Below the floor and all bone, unless MaximumHeight ends before. A flat floor is the base.
+  void ChooseBase()
+  {
     const double lowest = *std::max_element(this->Floor.begin(), this->Floor.end());
     this->Model.Base = std::max(lowest, this->Deepest + LeastWall);
     if (this->Options.MaximumHeight > 0)
@@ -279,11 +295,16 @@ private:
       }
       this->Model.Base = std::min(this->Model.Base, limit);
     }
-    if (flat)
+    if (this->Options.Floor == DefectFloor::Flat)
     {
       std::fill(this->Floor.begin(), this->Floor.end(), this->Model.Base);
     }
     this->Model.Bottom = this->Model.Base + this->Options.BaseThickness;
+  }
+
+  // Lifts what is deeper than the base, or was not measured, onto it.
+  void LiftTop()
+  {
     std::int64_t none = 0;
     std::int64_t cut = 0;
     for (double& z : this->Model.Top)

@@ -384,22 +384,34 @@ Vec3 FindSquareView(const std::vector<Vec3>& normals)
 }
 
 //------------------------------------------------------------------------------
-FaceRelief MakeFaceRelief(Execution& execution, const std::vector<Vec3>& points,
-  const std::vector<Triangle>& triangles, double spacing, double margin)
+namespace
 {
-  FaceRelief relief;
-  const std::vector<Vec3> normals = FindNormals(points, triangles);
+struct Face
+{
+  const std::vector<Vec3>& Points;
+  const std::vector<Triangle>& Triangles;
+  std::vector<Vec3> Normals; // of points; zero where there is no triangle
+  Vec3 View;
+  std::vector<Vec3> Flat; // points as they are seen, in mm from the relief's first pixel
+
+  bool HasPoint(std::size_t k) const { return HasDirection(this->Normals[k]); }
+};
+
+// The direction of pressing. Throws std::runtime_error when it does not see all of the face.
+Vec3 FindView(const Face& face, FaceRelief& relief)
+{
   std::vector<Vec3> used;
-  std::copy_if(normals.begin(), normals.end(), std::back_inserter(used),
+  std::copy_if(face.Normals.begin(), face.Normals.end(), std::back_inserter(used),
     [](const Vec3& normal) { return HasDirection(normal); });
   if (used.empty())
   {
     throw std::runtime_error("the face has no area");
   }
   const Vec3 view = FindSquareView(used);
-  const std::size_t steepest = FindSteepest(normals, view);
-  relief.SteepestPoint = points[steepest];
-  relief.SteepestAngle = Degrees * std::acos(std::clamp(-Dot(normals[steepest], view), -1.0, 1.0));
+  const std::size_t steepest = FindSteepest(face.Normals, view);
+  relief.SteepestPoint = face.Points[steepest];
+  relief.SteepestAngle =
+    Degrees * std::acos(std::clamp(-Dot(face.Normals[steepest], view), -1.0, 1.0));
   if (!(relief.SteepestAngle <= LargestAngle))
   {
     throw std::runtime_error(
@@ -409,8 +421,14 @@ FaceRelief MakeFaceRelief(Execution& execution, const std::vector<Vec3>& points,
       FormatNumber(LargestAngle) +
       " cannot be pressed. One mould cannot make it: make the implant in parts");
   }
+  return view;
+}
 
+// Sees the face along its view, with a margin around it.
+void PlaceFace(Face& face, double spacing, double margin, FaceRelief& relief)
+{
   // axes: x right, y down, z the view
+  const Vec3& view = face.View;
   int least = 0;
   for (int a = 1; a < 3; ++a)
   {
@@ -420,22 +438,20 @@ FaceRelief MakeFaceRelief(Execution& execution, const std::vector<Vec3>& points,
   helper[least] = 1;
   const Vec3 right = Normalized(Cross(helper, view));
   const Vec3 down = Cross(view, right);
-  const auto turn = [&](const Vec3& p) -> Vec3 {
-    return { Dot(p, right), Dot(p, down), Dot(p, view) };
-  };
   constexpr double infinite = std::numeric_limits<double>::infinity();
   Vec3 low{ infinite, infinite, infinite };
   Vec3 high{ -infinite, -infinite, -infinite };
-  std::vector<Vec3> flat(points.size(), Vec3{ 0, 0, 0 });
-  for (std::size_t k = 0; k < points.size(); ++k)
+  face.Flat.assign(face.Points.size(), Vec3{ 0, 0, 0 });
+  for (std::size_t k = 0; k < face.Points.size(); ++k)
   {
-    if (HasDirection(normals[k]))
+    if (face.HasPoint(k))
     {
-      flat[k] = turn(points[k]);
+      const Vec3& p = face.Points[k];
+      face.Flat[k] = { Dot(p, right), Dot(p, down), Dot(p, view) };
       for (int a = 0; a < 3; ++a)
       {
-        low[a] = std::min(low[a], flat[k][a]);
-        high[a] = std::max(high[a], flat[k][a]);
+        low[a] = std::min(low[a], face.Flat[k][a]);
+        high[a] = std::max(high[a], face.Flat[k][a]);
       }
     }
   }
@@ -450,45 +466,65 @@ FaceRelief MakeFaceRelief(Execution& execution, const std::vector<Vec3>& points,
   }
   const Vec3 origin = low[0] * right + low[1] * down + low[2] * view;
   relief.ToWorld = Matrix4::FromColumns(right, down, view, origin);
-  for (Vec3& p : flat)
+  relief.Size = { static_cast<std::int64_t>(std::ceil((high[0] - low[0]) / spacing)) + 1,
+    static_cast<std::int64_t>(std::ceil((high[1] - low[1]) / spacing)) + 1 };
+  for (Vec3& p : face.Flat)
   {
     p = p - low;
   }
-  std::vector<SplinePoint> samples;
+}
+
+double GetMeanEdge(const Face& face)
+{
+  const std::vector<Vec3>& points = face.Points;
   double edges = 0;
-  for (const auto& [a, b, c] : triangles)
+  for (const auto& [a, b, c] : face.Triangles)
   {
     edges +=
       (Norm(points[b] - points[a]) + Norm(points[c] - points[b]) + Norm(points[a] - points[c])) /
-      (3 * static_cast<double>(triangles.size()));
+      (3 * static_cast<double>(face.Triangles.size()));
   }
-  for (std::size_t k = 0; k < points.size(); ++k)
+  return edges;
+}
+
+// The largest distance of the face's points from a surface, square to the face.
+double GetDeviation(const Face& face, const BSplineSurface& surface)
+{
+  double deviation = 0;
+  for (std::size_t k = 0; k < face.Points.size(); ++k)
   {
-    if (HasDirection(normals[k]))
+    if (face.HasPoint(k))
     {
-      samples.push_back({ { flat[k][0], flat[k][1] }, flat[k] });
+      const Vec3& p = face.Flat[k];
+      const double off = surface.Evaluate(p[0], p[1])[2] - p[2];
+      deviation = std::max(deviation, std::abs(off * Dot(face.Normals[k], face.View)));
     }
   }
-  relief.Size = { static_cast<std::int64_t>(std::ceil((high[0] - low[0]) / spacing)) + 1,
-    static_cast<std::int64_t>(std::ceil((high[1] - low[1]) / spacing)) + 1 };
+  return deviation;
+}
+
+// Refines the surface until it is near the face, or as fine as the face's triangles.
+BSplineSurface FitFace(Execution& execution, const Face& face, double spacing, FaceRelief& relief)
+{
+  std::vector<SplinePoint> samples;
+  for (std::size_t k = 0; k < face.Points.size(); ++k)
+  {
+    if (face.HasPoint(k))
+    {
+      samples.push_back({ { face.Flat[k][0], face.Flat[k][1] }, face.Flat[k] });
+    }
+  }
+  const double edges = GetMeanEdge(face);
   const Vec2 far{ spacing * static_cast<double>(relief.Size.Columns - 1),
     spacing * static_cast<double>(relief.Size.Rows - 1) };
   BSplineSurface best;
-  relief.Deviation = infinite;
+  relief.Deviation = std::numeric_limits<double>::infinity();
   double step = std::max(far[0], far[1]) / CoarsestSpans;
   do
   {
     execution.Report(0);
     const BSplineSurface surface = FitScattered(samples, { 0, 0 }, far, step);
-    double deviation = 0;
-    for (std::size_t k = 0; k < points.size(); ++k)
-    {
-      if (HasDirection(normals[k]))
-      {
-        const double off = surface.Evaluate(flat[k][0], flat[k][1])[2] - flat[k][2];
-        deviation = std::max(deviation, std::abs(off * Dot(normals[k], view)));
-      }
-    }
+    const double deviation = GetDeviation(face, surface);
     if (deviation < relief.Deviation)
     {
       relief.Deviation = deviation;
@@ -497,15 +533,28 @@ FaceRelief MakeFaceRelief(Execution& execution, const std::vector<Vec3>& points,
     step *= Refinement;
   } while (relief.Deviation > GoodDistance && step > Finest * std::max(edges, spacing) &&
     far[0] * far[1] < MostControlPoints * step * step);
+  return best;
+}
+}
+
+//------------------------------------------------------------------------------
+FaceRelief MakeFaceRelief(Execution& execution, const std::vector<Vec3>& points,
+  const std::vector<Triangle>& triangles, double spacing, double margin)
+{
+  FaceRelief relief;
+  Face face{ points, triangles, FindNormals(points, triangles), {}, {} };
+  face.View = FindView(face, relief);
+  PlaceFace(face, spacing, margin, relief);
+  const BSplineSurface surface = FitFace(execution, face, spacing, relief);
   for (std::int64_t j = 0; j < relief.Size.Rows; ++j)
   {
     for (std::int64_t i = 0; i < relief.Size.Columns; ++i)
     {
       relief.Depths.push_back(
-        best.Evaluate(spacing * static_cast<double>(i), spacing * static_cast<double>(j))[2]);
+        surface.Evaluate(spacing * static_cast<double>(i), spacing * static_cast<double>(j))[2]);
     }
   }
-  MarkFace(flat, triangles, spacing, relief);
+  MarkFace(face.Flat, triangles, spacing, relief);
   return relief;
 }
 }

@@ -113,10 +113,15 @@ void LoopDistance::FindRow(
 FlangeBlend::FlangeBlend(
   Execution& execution, const LoopDistance& curves, double margin, double width)
 {
-  const double h = width / StepsPerWidth;
   const double middle = margin + 0.5 * width;
-  // what a control point knows of must not reach the points where the weight is 1 or 0
-  const double radius = 0.5 * StepsPerWidth - SplineReach - EdgeReach; // lattice steps
+  this->CoverCurves(curves, middle, width);
+  this->Smooth(execution, this->FindSet(execution, curves, middle));
+}
+
+//------------------------------------------------------------------------------
+void FlangeBlend::CoverCurves(const LoopDistance& curves, double middle, double width)
+{
+  const double h = width / StepsPerWidth;
   const double reach = middle + 0.5 * width + 4 * h;
   double count[2];
   for (int i = 0; i < 2; ++i)
@@ -135,12 +140,16 @@ FlangeBlend::FlangeBlend(
   }
   this->Lattice.Columns = static_cast<std::int64_t>(count[0]);
   this->Lattice.Rows = static_cast<std::int64_t>(count[1]);
-  const std::int64_t columns = this->Lattice.Columns;
-  const std::int64_t rows = this->Lattice.Rows;
+}
 
-  // the set, with an edge that is one step of the lattice wide
-  std::vector<double> set(static_cast<std::size_t>(columns * rows));
-  execution.For(rows, 4,
+//------------------------------------------------------------------------------
+std::vector<double> FlangeBlend::FindSet(
+  Execution& execution, const LoopDistance& curves, double middle) const
+{
+  const double h = this->Lattice.Spacing[0];
+  const std::int64_t columns = this->Lattice.Columns;
+  std::vector<double> set(static_cast<std::size_t>(columns * this->Lattice.Rows));
+  execution.For(this->Lattice.Rows, 4,
     [&](std::int64_t begin, std::int64_t end)
     {
       for (std::int64_t j = begin; j < end; ++j)
@@ -153,7 +162,15 @@ FlangeBlend::FlangeBlend(
         }
       }
     });
+  return set;
+}
 
+//------------------------------------------------------------------------------
+void FlangeBlend::Smooth(Execution& execution, const std::vector<double>& set)
+{
+  // what a control point knows of must not reach the points where the weight is 1 or 0
+  constexpr double radius = 0.5 * StepsPerWidth - SplineReach - EdgeReach; // lattice steps
+  const std::int64_t columns = this->Lattice.Columns;
   struct Tap
   {
     std::int64_t Step;
@@ -175,7 +192,7 @@ FlangeBlend::FlangeBlend(
     }
   }
   this->Coefficients.assign(set.size(), 0);
-  execution.For(rows - 2 * taps, 4,
+  execution.For(this->Lattice.Rows - 2 * taps, 4,
     [&](std::int64_t begin, std::int64_t end)
     {
       for (std::int64_t node = (begin + taps) * columns + taps;

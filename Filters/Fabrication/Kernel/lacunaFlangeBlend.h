@@ -53,6 +53,12 @@ public:
   Value Evaluate(const Vec2& p) const;
 
 private:
+  void CoverCurves(const LoopDistance& curves, double middle, double width);
+  // The set of the points within middle, with an edge that is one step of the lattice wide.
+  std::vector<double> FindSet(
+    Execution& execution, const LoopDistance& curves, double middle) const;
+  void Smooth(Execution& execution, const std::vector<double>& set);
+
   PlanarGrid Lattice;
   std::vector<double> Coefficients;
 };

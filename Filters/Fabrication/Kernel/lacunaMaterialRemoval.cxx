@@ -242,6 +242,52 @@ double MaterialRemoval::GetDistance(const Segment& s, const Vec3& p, double best
 }
 
 //------------------------------------------------------------------------------
+void MaterialRemoval::Visit(
+  std::int64_t u, std::int64_t v, const Vec3& p, Result& result, std::int64_t& nearest) const
+{
+  const std::int64_t bin = u + this->Bins[0] * v;
+  if (this->BinStarts[bin] == this->BinStarts[bin + 1])
+  {
+    return;
+  }
+  const double x = this->Low[0] + static_cast<double>(u) * this->BinSize - p[0];
+  const double y = this->Low[1] + static_cast<double>(v) * this->BinSize - p[1];
+  const double d2 = Square(std::max({ 0.0, x, -x - this->BinSize })) +
+    Square(std::max({ 0.0, y, -y - this->BinSize }));
+  const double r2 = Square(this->Radius);
+  const double lowest = this->BinLowest[bin];
+  const double up = std::max(0.0, lowest - p[2]);
+  const bool nearer = this->Ball ? d2 + up * up < Square(this->Radius + result.LeftOver)
+                                 : up < std::max(result.LeftOver, 0.0) &&
+      d2 < Square(this->Radius + std::max(result.LeftOver, 0.0));
+  const bool lower =
+    d2 <= r2 && (this->Ball ? lowest - std::sqrt(r2 - d2) : lowest) < result.Height;
+  // where it is in the tool the flat end's depth needs all that is near
+  const bool inside = !this->Ball && d2 <= r2 && lowest < p[2];
+  if (!nearer && !lower && !inside)
+  {
+    return;
+  }
+  for (std::int64_t k = this->BinStarts[bin]; k < this->BinStarts[bin + 1]; ++k)
+  {
+    const Segment& s = this->Segments[this->BinSegments[k]];
+    if (lower)
+    {
+      result.Height = this->GetHeight(s, p, result.Height);
+    }
+    if (nearer || inside)
+    {
+      const double distance = this->GetDistance(s, p, result.LeftOver);
+      if (distance < result.LeftOver)
+      {
+        result.LeftOver = distance;
+        nearest = this->BinSegments[k];
+      }
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
 MaterialRemoval::Result MaterialRemoval::At(const Vec3& p, std::int64_t& nearest) const
 {
   Result result{ this->StockTop, this->StockTop - p[2] };
@@ -258,49 +304,6 @@ MaterialRemoval::Result MaterialRemoval::At(const Vec3& p, std::int64_t& nearest
     centre[c] = std::clamp<std::int64_t>(
       static_cast<std::int64_t>(std::floor(t / this->BinSize)), 0, this->Bins[c] - 1);
   }
-  const auto visit = [&](std::int64_t u, std::int64_t v)
-  {
-    const std::int64_t bin = u + this->Bins[0] * v;
-    if (this->BinStarts[bin] == this->BinStarts[bin + 1])
-    {
-      return;
-    }
-    const double x = this->Low[0] + static_cast<double>(u) * this->BinSize - p[0];
-    const double y = this->Low[1] + static_cast<double>(v) * this->BinSize - p[1];
-    const double d2 = Square(std::max({ 0.0, x, -x - this->BinSize })) +
-      Square(std::max({ 0.0, y, -y - this->BinSize }));
-    const double r2 = Square(this->Radius);
-    const double lowest = this->BinLowest[bin];
-    const double up = std::max(0.0, lowest - p[2]);
-    const bool nearer = this->Ball ? d2 + up * up < Square(this->Radius + result.LeftOver)
-                                   : up < std::max(result.LeftOver, 0.0) &&
-        d2 < Square(this->Radius + std::max(result.LeftOver, 0.0));
-    const bool lower =
-      d2 <= r2 && (this->Ball ? lowest - std::sqrt(r2 - d2) : lowest) < result.Height;
-    // where it is in the tool the flat end's depth needs all that is near
-    const bool inside = !this->Ball && d2 <= r2 && lowest < p[2];
-    if (!nearer && !lower && !inside)
-    {
-      return;
-    }
-    for (std::int64_t k = this->BinStarts[bin]; k < this->BinStarts[bin + 1]; ++k)
-    {
-      const Segment& s = this->Segments[this->BinSegments[k]];
-      if (lower)
-      {
-        result.Height = this->GetHeight(s, p, result.Height);
-      }
-      if (nearer || inside)
-      {
-        const double distance = this->GetDistance(s, p, result.LeftOver);
-        if (distance < result.LeftOver)
-        {
-          result.LeftOver = distance;
-          nearest = this->BinSegments[k];
-        }
-      }
-    }
-  };
   const std::int64_t rings = std::max(
     { centre[0], this->Bins[0] - 1 - centre[0], centre[1], this->Bins[1] - 1 - centre[1] });
   for (std::int64_t ring = 0; ring <= rings; ++ring)
@@ -321,7 +324,7 @@ MaterialRemoval::Result MaterialRemoval::At(const Vec3& p, std::int64_t& nearest
       {
         if (u >= 0 && u < this->Bins[0])
         {
-          visit(u, v);
+          this->Visit(u, v, p, result, nearest);
         }
       }
     }

@@ -43,6 +43,9 @@ private:
   void AddToBins();
   double GetHeight(const Segment& s, const Vec3& p, double best) const;
   double GetDistance(const Segment& s, const Vec3& p, double best) const;
+  // Looks at the motions of a bin that may change the result.
+  void Visit(
+    std::int64_t u, std::int64_t v, const Vec3& p, Result& result, std::int64_t& nearest) const;
 
   bool Ball;
   double Radius;

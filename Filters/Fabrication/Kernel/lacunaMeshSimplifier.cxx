@@ -395,8 +395,27 @@ private:
   // too far from all.
   bool Collapse(std::int32_t from, std::int32_t to, const Vec3* place)
   {
+    const std::size_t own = this->CollectChanges(from, to, place != nullptr);
     const Vec3 before = this->Mesh.Points[to];
-    // the triangles that change and stay, with their new corners
+    this->Mesh.Points[to] = place ? *place : before;
+    if (!this->IsAllowed())
+    {
+      this->Mesh.Points[to] = before;
+      return false;
+    }
+    this->RemoveTriangles(from, to);
+    this->ChangeTriangles(to, own);
+    this->Placed[to] = place ? 1 : this->Placed[to];
+    this->Quadrics[to].Add(this->Quadrics[from]);
+    ++this->Stamps[to];
+    this->Think(to);
+    return true;
+  }
+
+  // Kept gets the triangles that change and stay, first those of from, Moved their new corners, Loose all samples of
+  // changed triangles. Returns how many are of from. isMoved: to does not stay where it is.
+  std::size_t CollectChanges(std::int32_t from, std::int32_t to, bool isMoved)
+  {
     this->Kept.clear();
     this->Moved.clear();
     this->Loose.clear();
@@ -421,8 +440,8 @@ private:
         collect(t);
       }
     }
-    const std::size_t own = this->Kept.size(); // of from; to has them already from here on
-    if (place)
+    const std::size_t own = this->Kept.size();
+    if (isMoved)
     {
       for (const std::int32_t t : this->Around[to])
       {
@@ -431,21 +450,26 @@ private:
           collect(t);
         }
       }
-      this->Mesh.Points[to] = *place;
     }
+    return own;
+  }
+
+  // Whether the triangles of Moved are good and near the mesh as it was.
+  bool IsAllowed()
+  {
     for (std::size_t k = 0; k < this->Kept.size(); ++k)
     {
       if (!this->IsGood(this->Moved[k], this->Normals[k]))
       {
-        this->Mesh.Points[to] = before;
         return false;
       }
     }
-    if (!this->AssignSamples() || !this->AreNear())
-    {
-      this->Mesh.Points[to] = before;
-      return false;
-    }
+    return this->AssignSamples() && this->AreNear();
+  }
+
+  // Takes the triangles at the edge away, and all of from's samples.
+  void RemoveTriangles(std::int32_t from, std::int32_t to)
+  {
     for (const std::int32_t t : this->Around[from])
     {
       this->Samples[t].clear();
@@ -462,6 +486,12 @@ private:
         }
       }
     }
+    this->Around[from].clear();
+  }
+
+  // Makes Moved of Kept. The first ones, own, become triangles of to; it has the others already.
+  void ChangeTriangles(std::int32_t to, std::size_t own)
+  {
     for (std::size_t k = 0; k < this->Kept.size(); ++k)
     {
       this->Samples[this->Kept[k]].clear();
@@ -475,12 +505,6 @@ private:
     {
       this->Samples[this->Kept[this->Owners[k]]].push_back(this->Loose[k]);
     }
-    this->Placed[to] = place ? 1 : this->Placed[to];
-    this->Around[from].clear();
-    this->Quadrics[to].Add(this->Quadrics[from]);
-    ++this->Stamps[to];
-    this->Think(to);
-    return true;
   }
 
   bool Has(std::int32_t triangle, std::int32_t point) const

@@ -20,71 +20,84 @@ double SignedArea(const Loop& loop)
 }
 
 //------------------------------------------------------------------------------
+namespace
+{
+// Edges of a grid: 2 * node is from the node to the right, 2 * node + 1 the one down.
+// Links the edges of a cell that a contour crosses, with the inside on its left.
+void LinkCell(const PlanarGrid& grid, const std::vector<double>& values, double level,
+  std::int64_t node, std::vector<std::int64_t>& next)
+{
+  const std::int64_t columns = grid.Columns;
+  // corners around the cell, x to y
+  const double v[4] = { values[node], values[node + 1], values[node + columns + 1],
+    values[node + columns] };
+  int mask = 0;
+  for (int k = 0; k < 4; ++k)
+  {
+    mask |= (v[k] >= level) << k;
+  }
+  if (mask == 0 || mask == 15)
+  {
+    return;
+  }
+  // edges[k] is between corners k and k + 1
+  const std::int64_t edges[4] = { 2 * node, 2 * (node + 1) + 1, 2 * (node + columns),
+    2 * node + 1 };
+  const bool joined = v[0] + v[1] + v[2] + v[3] >= 4 * level; // saddles: by the middle
+  for (int k = 0; k < 4; ++k)
+  {
+    const bool here = mask >> k & 1;
+    const bool after = mask >> ((k + 1) % 4) & 1;
+    if (!here || after)
+    {
+      continue;
+    }
+    // The inside ends on edge k. With it on the left the contour starts here and leaves where
+    // the inside starts: the edge before this run of inside corners; in a saddle whose middle
+    // is inside, the one after the next outside corner.
+    int to;
+    if ((mask == 5 || mask == 10) && joined)
+    {
+      to = (k + 1) % 4;
+    }
+    else
+    {
+      to = (k + 3) % 4;
+      while (mask >> to & 1)
+      {
+        to = (to + 3) % 4;
+      }
+    }
+    next[edges[k]] = edges[to];
+  }
+}
+
+// Where the level is on an edge.
+Vec2 FindOnEdge(
+  const PlanarGrid& grid, const std::vector<double>& values, double level, std::int64_t edge)
+{
+  const std::int64_t columns = grid.Columns;
+  const std::int64_t node = edge / 2;
+  const std::int64_t other = edge % 2 ? node + columns : node + 1;
+  const double t = std::clamp((level - values[node]) / (values[other] - values[node]), 0.0, 1.0);
+  Vec2 p = grid.GetNode(node % columns, node / columns);
+  p[edge % 2] += t * grid.Spacing[edge % 2];
+  return p;
+}
+}
+
+//------------------------------------------------------------------------------
 std::vector<Loop> FindContours(
   const PlanarGrid& grid, const std::vector<double>& values, double level)
 {
-  // grid edges: 2 * node is from the node to the right, 2 * node + 1 the one down
   std::vector<std::int64_t> next(2 * values.size(), -1);
-  const std::int64_t columns = grid.Columns;
-  const auto link = [&](std::int64_t from, std::int64_t to) { next[from] = to; };
   for (std::int64_t j = 0; j + 1 < grid.Rows; ++j)
   {
-    for (std::int64_t i = 0; i + 1 < columns; ++i)
+    for (std::int64_t i = 0; i + 1 < grid.Columns; ++i)
     {
-      const std::int64_t node = i + columns * j;
-      // corners around the cell, x to y
-      const double v[4] = { values[node], values[node + 1], values[node + columns + 1],
-        values[node + columns] };
-      int mask = 0;
-      for (int k = 0; k < 4; ++k)
-      {
-        mask |= (v[k] >= level) << k;
-      }
-      if (mask == 0 || mask == 15)
-      {
-        continue;
-      }
-      // edges[k] is between corners k and k + 1
-      const std::int64_t edges[4] = { 2 * node, 2 * (node + 1) + 1, 2 * (node + columns),
-        2 * node + 1 };
-      const bool joined = v[0] + v[1] + v[2] + v[3] >= 4 * level; // saddles: by the middle
-      for (int k = 0; k < 4; ++k)
-      {
-        const bool here = mask >> k & 1;
-        const bool after = mask >> ((k + 1) % 4) & 1;
-        if (!here || after)
-        {
-          continue;
-        }
-        // The inside ends on edge k. With it on the left the contour starts here and leaves where
-        // the inside starts: the edge before this run of inside corners; in a saddle whose middle
-        // is inside, the one after the next outside corner.
-        int to;
-        if ((mask == 5 || mask == 10) && joined)
-        {
-          to = (k + 1) % 4;
-        }
-        else
-        {
-          to = (k + 3) % 4;
-          while (mask >> to & 1)
-          {
-            to = (to + 3) % 4;
-          }
-        }
-        link(edges[k], edges[to]);
-      }
+      LinkCell(grid, values, level, i + grid.Columns * j, next);
     }
   }
-  const auto point = [&](std::int64_t edge) -> Vec2
-  {
-    const std::int64_t node = edge / 2;
-    const std::int64_t other = edge % 2 ? node + columns : node + 1;
-    const double t = std::clamp((level - values[node]) / (values[other] - values[node]), 0.0, 1.0);
-    Vec2 p = grid.GetNode(node % columns, node / columns);
-    p[edge % 2] += t * grid.Spacing[edge % 2];
-    return p;
-  };
   std::vector<Loop> loops;
   for (std::size_t start = 0; start < next.size(); ++start)
   {
@@ -95,7 +108,7 @@ std::vector<Loop> FindContours(
     Loop loop;
     for (auto edge = static_cast<std::int64_t>(start); next[edge] >= 0;)
     {
-      loop.push_back(point(edge));
+      loop.push_back(FindOnEdge(grid, values, level, edge));
       const std::int64_t following = next[edge];
       next[edge] = -1;
       edge = following;

@@ -254,8 +254,24 @@ private:
 
   void Insert(Index p)
   {
+    int edge = -1;
+    const Index cell = this->Locate(p, edge);
+    if (edge < 0)
+    {
+      this->SplitCell(cell, p);
+    }
+    else
+    {
+      this->SplitEdge(cell, edge, p);
+    }
+    this->FlipAround(p);
+    this->Last = this->CellOf[p];
+  }
+
+  // The triangle in which p is. edge: on which p is, -1 for none.
+  Index Locate(Index p, int& edge) const
+  {
     Index cell = this->Last;
-    int edge = -1; // that p lies on
     for (bool found = false; !found;)
     {
       found = true;
@@ -280,44 +296,53 @@ private:
         }
       }
     }
-    std::vector<Index>& stack = this->Stack;
+    return cell;
+  }
+
+  // Makes three triangles of one; Stack gets them.
+  void SplitCell(Index cell, Index p)
+  {
+    const auto [v, n] = this->Cells[cell];
+    const Index second = this->AddCell();
+    const Index third = this->AddCell();
+    this->Set(cell, { p, v[0], v[1] }, { n[2], second, third });
+    this->Set(second, { p, v[1], v[2] }, { n[0], third, cell });
+    this->Set(third, { p, v[2], v[0] }, { n[1], cell, second });
+    this->Relink(n[0], cell, second);
+    this->Relink(n[1], cell, third);
+    this->Stack = { cell, second, third };
+  }
+
+  // Halves both triangles at an edge; Stack gets the four.
+  void SplitEdge(Index cell, int edge, Index p)
+  {
     const Cell old = this->Cells[cell];
-    if (edge < 0)
-    {
-      const auto& [v, n] = old;
-      const Index second = this->AddCell();
-      const Index third = this->AddCell();
-      this->Set(cell, { p, v[0], v[1] }, { n[2], second, third });
-      this->Set(second, { p, v[1], v[2] }, { n[0], third, cell });
-      this->Set(third, { p, v[2], v[0] }, { n[1], cell, second });
-      this->Relink(n[0], cell, second);
-      this->Relink(n[1], cell, third);
-      stack = { cell, second, third };
-    }
-    else
-    {
-      // both triangles at the edge are halved
-      const Index other = old.Neighbours[edge];
-      const Cell across = this->Cells[other];
-      const int j = this->Facing(other, cell);
-      const Index top = old.Corners[edge];
-      const Index a = old.Corners[Next(edge)];
-      const Index b = old.Corners[Previous(edge)];
-      const Index d = across.Corners[j];
-      const Index topA = old.Neighbours[Previous(edge)];
-      const Index bTop = old.Neighbours[Next(edge)];
-      const Index aD = across.Neighbours[Next(j)];
-      const Index dB = across.Neighbours[Previous(j)];
-      const Index third = this->AddCell();
-      const Index fourth = this->AddCell();
-      this->Set(cell, { p, top, a }, { topA, other, third });
-      this->Set(other, { p, a, d }, { aD, fourth, cell });
-      this->Set(third, { p, b, top }, { bTop, cell, fourth });
-      this->Set(fourth, { p, d, b }, { dB, third, other });
-      this->Relink(bTop, cell, third);
-      this->Relink(dB, other, fourth);
-      stack = { cell, other, third, fourth };
-    }
+    const Index other = old.Neighbours[edge];
+    const Cell across = this->Cells[other];
+    const int j = this->Facing(other, cell);
+    const Index top = old.Corners[edge];
+    const Index a = old.Corners[Next(edge)];
+    const Index b = old.Corners[Previous(edge)];
+    const Index d = across.Corners[j];
+    const Index topA = old.Neighbours[Previous(edge)];
+    const Index bTop = old.Neighbours[Next(edge)];
+    const Index aD = across.Neighbours[Next(j)];
+    const Index dB = across.Neighbours[Previous(j)];
+    const Index third = this->AddCell();
+    const Index fourth = this->AddCell();
+    this->Set(cell, { p, top, a }, { topA, other, third });
+    this->Set(other, { p, a, d }, { aD, fourth, cell });
+    this->Set(third, { p, b, top }, { bTop, cell, fourth });
+    this->Set(fourth, { p, d, b }, { dB, third, other });
+    this->Relink(bTop, cell, third);
+    this->Relink(dB, other, fourth);
+    this->Stack = { cell, other, third, fourth };
+  }
+
+  // Flips edges opposite to p, beginning with the triangles of Stack, until all are Delaunay's.
+  void FlipAround(Index p)
+  {
+    std::vector<Index>& stack = this->Stack;
     while (!stack.empty())
     {
       const Index t = stack.back();
@@ -338,7 +363,6 @@ private:
         stack.push_back(o);
       }
     }
-    this->Last = this->CellOf[p];
   }
 
   // Whether the segments a b and c d cross between their ends.

@@ -304,23 +304,18 @@ Vec2 PlateOutline::GetInset(std::size_t k, double distance) const
 }
 
 //------------------------------------------------------------------------------
-PlateOutline FindPlateOutline(Execution& execution, const ReliefSurface& surface, GridSize size,
-  const Vec2& spacing, const std::vector<unsigned char>& mask, const PlateOutlineOptions& options)
+namespace
 {
-  PlateOutline outline;
-  const double radius = outline.CornerRadius = options.CornerRadius;
-  outline.Defect = FindDefect(size, spacing, mask, outline.Warnings);
-
-  const double h = options.Spacing;
-  const double notch = GetNotchRadius(options);
-  const double margin = std::max(0.0, notch - options.Clearance) + 4 * h;
+// A lattice over a loop and a margin around it.
+PlanarGrid CoverLoop(const Loop& loop, double margin, double h)
+{
   PlanarGrid grid;
   grid.Spacing = { h, h };
   double high[2];
   for (int i = 0; i < 2; ++i)
   {
     const auto less = [i](const Vec2& a, const Vec2& b) { return a[i] < b[i]; };
-    const auto range = std::minmax_element(outline.Defect.begin(), outline.Defect.end(), less);
+    const auto range = std::minmax_element(loop.begin(), loop.end(), less);
     grid.Origin[i] = (*range.first)[i] - margin;
     high[i] = (*range.second)[i] + margin;
   }
@@ -334,25 +329,42 @@ PlateOutline FindPlateOutline(Execution& execution, const ReliefSurface& surface
   }
   grid.Columns = static_cast<std::int64_t>(columns);
   grid.Rows = static_cast<std::int64_t>(rows);
+  return grid;
+}
 
-  // A loop moved inwards, and how many others there were.
-  int pieces = 0;
-  int islands = 0;
-  const auto move = [&](const Loop& loop, double inwards)
+// Moves loops along the surface.
+struct LoopMover
+{
+  Execution& Run;
+  const ReliefSurface& Surface;
+  const PlanarGrid Grid;
+  int Pieces = 0; // of the last loop
+  int Islands = 0;
+
+  Loop Move(const Loop& loop, double inwards)
   {
+    const double h = this->Grid.Spacing[0];
     const std::vector<double> distances =
-      GetDistances(execution, surface, grid, loop, std::abs(inwards) + 8 * h);
-    return TakeLargest(FindContours(grid, distances, inwards), h * h, pieces, islands);
-  };
+      GetDistances(this->Run, this->Surface, this->Grid, loop, std::abs(inwards) + 8 * h);
+    return TakeLargest(
+      FindContours(this->Grid, distances, inwards), h * h, this->Pieces, this->Islands);
+  }
+};
+
+// The defect's outline moved inwards by the clearance and the radius of corners, without notches that are too narrow.
+Loop FindCore(LoopMover& mover, PlateOutline& outline, const PlateOutlineOptions& options)
+{
+  const double radius = options.CornerRadius;
+  const double notch = GetNotchRadius(options);
   const double inset = options.Clearance + radius;
   Loop core = outline.Defect;
   if (notch > 0)
   {
-    core = move(core, options.Clearance - notch);
+    core = mover.Move(core, options.Clearance - notch);
   }
   if (core.size() >= 3)
   {
-    core = move(core, notch > 0 ? notch + radius : inset);
+    core = mover.Move(core, notch > 0 ? notch + radius : inset);
   }
   if (core.size() < 3)
   {
@@ -360,17 +372,20 @@ PlateOutline FindPlateOutline(Execution& execution, const ReliefSurface& surface
       FormatNumber(std::round(100 * inset) / 100) +
       " mm (EdgeClearance plus the radius of corners, which is at least Bevel plus TriangleSize)");
   }
-  if (pieces > 1)
+  if (mover.Pieces > 1)
   {
     outline.Warnings.push_back("the outline is narrower than " +
       FormatNumber(std::round(200 * inset) / 100) +
-      " mm at places, where the plate would come apart into " + std::to_string(pieces) +
+      " mm at places, where the plate would come apart into " + std::to_string(mover.Pieces) +
       " pieces; only the largest is made. Reduce EdgeClearance, Bevel or CornerRadius");
   }
-  const Loop outer = move(core, -radius);
-  outline.Points = Resample(surface, outer, h, outline.Length);
+  return core;
+}
 
-  // exactly at the distance
+// Moves the outline's points so that they are exactly at the radius of corners from the core.
+void PlaceExactly(const ReliefSurface& surface, const Loop& core, double h, PlateOutline& outline)
+{
+  const double radius = outline.CornerRadius;
   const CurveIndex index({ Lift(surface, core) }, 2 * h);
   for (Vec2& p : outline.Points)
   {
@@ -390,6 +405,23 @@ PlateOutline FindPlateOutline(Execution& execution, const ReliefSurface& surface
         "SupportMargin or OutputMargin of RBF Hole Filler, or EdgeClearance");
     }
   }
+}
+}
+
+//------------------------------------------------------------------------------
+PlateOutline FindPlateOutline(Execution& execution, const ReliefSurface& surface, GridSize size,
+  const Vec2& spacing, const std::vector<unsigned char>& mask, const PlateOutlineOptions& options)
+{
+  PlateOutline outline;
+  outline.CornerRadius = options.CornerRadius;
+  outline.Defect = FindDefect(size, spacing, mask, outline.Warnings);
+  const double h = options.Spacing;
+  const double margin = std::max(0.0, GetNotchRadius(options) - options.Clearance) + 4 * h;
+  LoopMover mover{ execution, surface, CoverLoop(outline.Defect, margin, h) };
+  const Loop core = FindCore(mover, outline, options);
+  const Loop outer = mover.Move(core, -options.CornerRadius);
+  outline.Points = Resample(surface, outer, h, outline.Length);
+  PlaceExactly(surface, core, h, outline);
   return outline;
 }
 }

@@ -416,6 +416,47 @@ Spaces Economise(Execution& execution, const Problem& problem, double tolerance)
   return best;
 }
 
+// The points that a surface has to go through, and how points are made of its components.
+struct Target
+{
+  const std::function<Vec3(double u, double v, const double* values)>& Place;
+  std::vector<double> Coordinates; // of the points, by u
+};
+
+// The surface in its spaces. decimals: to which control points are rounded; 17: not at all.
+SurfaceFit Build(Execution& execution, const Problem& problem, const Spaces& spaces, int decimals,
+  const Target& target)
+{
+  SurfaceFit fit;
+  fit.Surface.U = spaces.U;
+  fit.Surface.V = spaces.V;
+  fit.U = problem.U;
+  fit.V = problem.V;
+  fit.Decimals = decimals;
+  std::vector<double> coefficients;
+  if (problem.Components > 0)
+  {
+    coefficients = Solve(execution, problem, spaces);
+  }
+  const double steps = std::pow(10, decimals);
+  const std::int64_t sizeU = spaces.U.GetSize();
+  std::vector<double> flat;
+  flat.reserve(3 * spaces.GetSize());
+  for (std::int64_t k = 0; k < spaces.GetSize(); ++k)
+  {
+    Vec3 p = target.Place(spaces.U.GetIdentityCoefficient(k % sizeU),
+      spaces.V.GetIdentityCoefficient(k / sizeU), coefficients.data() + k * problem.Components);
+    for (double& x : p.Elements)
+    {
+      x = decimals < 17 ? std::round(x * steps) / steps + 0.0 : x;
+      flat.push_back(x);
+    }
+    fit.Surface.ControlPoints.push_back(p);
+  }
+  fit.MaximumDeviation = Deviation(execution, problem, spaces, flat, target.Coordinates, 3);
+  return fit;
+}
+
 // Fits the components that need it, lets place make points of their coefficients and verifies
 // what came out, rounding included.
 SurfaceFit FitComponents(Execution& execution, Problem& problem, double neglected,
@@ -430,47 +471,15 @@ SurfaceFit FitComponents(Execution& execution, Problem& problem, double neglecte
   RequireMemory("a surface through so many samples",
     sizeof(double) * 4.0 * (problem.Components + 3) * static_cast<double>(points.size()));
   problem.ByU = Transposed(problem.ByV, problem.Rows(), problem.Columns(), problem.Components);
-  std::vector<double> coordinates(3 * points.size());
+  Target target{ place, std::vector<double>(3 * points.size()) };
   for (std::int64_t j = 0; j < problem.Rows(); ++j)
   {
     for (std::int64_t i = 0; i < problem.Columns(); ++i)
     {
       std::copy_n(points[i + problem.Columns() * j].data(), 3,
-        coordinates.data() + 3 * (j + problem.Rows() * i));
+        target.Coordinates.data() + 3 * (j + problem.Rows() * i));
     }
   }
-
-  const auto build = [&](const Spaces& spaces, int decimals)
-  {
-    SurfaceFit fit;
-    fit.Surface.U = spaces.U;
-    fit.Surface.V = spaces.V;
-    fit.U = problem.U;
-    fit.V = problem.V;
-    fit.Decimals = decimals;
-    std::vector<double> coefficients;
-    if (problem.Components > 0)
-    {
-      coefficients = Solve(execution, problem, spaces);
-    }
-    const double steps = std::pow(10, decimals);
-    const std::int64_t sizeU = spaces.U.GetSize();
-    std::vector<double> flat;
-    flat.reserve(3 * spaces.GetSize());
-    for (std::int64_t k = 0; k < spaces.GetSize(); ++k)
-    {
-      Vec3 p = place(spaces.U.GetIdentityCoefficient(k % sizeU),
-        spaces.V.GetIdentityCoefficient(k / sizeU), coefficients.data() + k * problem.Components);
-      for (double& x : p.Elements)
-      {
-        x = decimals < 17 ? std::round(x * steps) / steps + 0.0 : x;
-        flat.push_back(x);
-      }
-      fit.Surface.ControlPoints.push_back(p);
-    }
-    fit.MaximumDeviation = Deviation(execution, problem, spaces, flat, coordinates, 3);
-    return fit;
-  };
 
   if (options.Tolerance > 0)
   {
@@ -486,13 +495,13 @@ SurfaceFit FitComponents(Execution& execution, Problem& problem, double neglecte
     {
       spaces = Economise(execution, problem, left);
     }
-    SurfaceFit fit = build(spaces, round ? decimals : 17);
+    SurfaceFit fit = Build(execution, problem, spaces, round ? decimals : 17, target);
     if (fit.MaximumDeviation <= options.Tolerance)
     {
       return fit;
     }
   }
-  SurfaceFit fit = build(Interpolation(problem), 17);
+  SurfaceFit fit = Build(execution, problem, Interpolation(problem), 17, target);
   if (options.Tolerance > 0 && fit.MaximumDeviation > options.Tolerance)
   {
     std::ostringstream message;

@@ -172,31 +172,102 @@ double IncompleteShape::GetContent() const
   return content * std::pow(cell, this->IsFlat() ? 2 : 3);
 }
 
-std::vector<unsigned char> IncompleteShape::Sample(Execution& execution) const
+// Random numbers, one after the other.
+class IncompleteShape::Draws
+{
+public:
+  explicit Draws(std::uint64_t seed)
+    : Noise(seed, 0)
+  {
+  }
+  double Uniform() { return this->Noise.Uniform(this->Drawn++); }
+  std::int64_t Below(std::int64_t end)
+  {
+    return static_cast<std::int64_t>(this->Uniform() * static_cast<double>(end));
+  }
+
+private:
+  CounterNoise Noise;
+  std::uint64_t Drawn = 0;
+};
+
+std::array<double, 3> IncompleteShape::GetPosition(std::int64_t voxel) const
 {
   const std::array<int, 3>& n = this->Dimensions;
-  const auto at = [&n](std::int64_t i)
-  {
-    return std::array<double, 3>{ static_cast<double>(i % n[0]) - 0.5 * (n[0] - 1),
-      static_cast<double>(i / n[0] % n[1]) - 0.5 * (n[1] - 1),
-      static_cast<double>(i / (static_cast<std::int64_t>(n[0]) * n[1])) - 0.5 * (n[2] - 1) };
-  };
-  const std::int64_t count = static_cast<std::int64_t>(n[0]) * n[1] * n[2];
-  std::vector<unsigned char> voxels(count, 0);
+  return { static_cast<double>(voxel % n[0]) - 0.5 * (n[0] - 1),
+    static_cast<double>(voxel / n[0] % n[1]) - 0.5 * (n[1] - 1),
+    static_cast<double>(voxel / (static_cast<std::int64_t>(n[0]) * n[1])) - 0.5 * (n[2] - 1) };
+}
+
+void IncompleteShape::AddSurface(std::vector<unsigned char>& voxels, Execution& execution) const
+{
   const double open = std::cos(this->Values.GapAngle * Pi / 360);
-  const Execution::NestedStages nested(execution);
-  execution.SetStage(0, 0.2);
-  execution.For(count, 1 << 14,
+  execution.For(static_cast<std::int64_t>(voxels.size()), 1 << 14,
     [&](std::int64_t begin, std::int64_t end)
     {
       for (std::int64_t i = begin; i < end; ++i)
       {
-        const auto p = at(i);
+        const auto p = this->GetPosition(i);
         const double length = std::sqrt(p[0] * p[0] + p[1] * p[1] + p[2] * p[2]);
         const bool inGap = this->Values.GapAngle > 0 && p[0] > length * open;
         voxels[i] = !inGap && std::abs(this->GetDistance(p[0], p[1], p[2])) <= 0.5;
       }
     });
+}
+
+std::int64_t IncompleteShape::RemovePatches(const std::vector<std::int64_t>& object,
+  std::int64_t kept, Draws& draws, std::vector<unsigned char>& voxels, Execution& execution) const
+{
+  const std::array<double, 2>& radii = this->Values.PatchRadii;
+  auto present = static_cast<std::int64_t>(object.size());
+  const auto removed = static_cast<double>(present - kept);
+  while (present > kept)
+  {
+    execution.Report(1 - static_cast<double>(present - kept) / removed);
+    const auto centre =
+      this->GetPosition(object[draws.Below(static_cast<std::int64_t>(object.size()))]);
+    const double radius = radii[0] + (radii[1] - radii[0]) * draws.Uniform();
+    for (const std::int64_t i : object)
+    {
+      const auto p = this->GetPosition(i);
+      const double distance =
+        std::hypot(std::hypot(p[0] - centre[0], p[1] - centre[1]), p[2] - centre[2]);
+      if (voxels[i] && distance <= radius)
+      {
+        voxels[i] = 0;
+        --present;
+      }
+    }
+  }
+  return present;
+}
+
+void IncompleteShape::AddTissue(std::vector<unsigned char>& voxels, Execution& execution) const
+{
+  const CounterNoise echo(this->Values.Seed, 1);
+  execution.For(static_cast<std::int64_t>(voxels.size()), 1 << 14,
+    [&](std::int64_t begin, std::int64_t end)
+    {
+      for (std::int64_t i = begin; i < end; ++i)
+      {
+        const auto p = this->GetPosition(i);
+        const bool inside = this->GetDistance(p[0], p[1], p[2]) < -0.5;
+        if (inside && echo.Uniform(i) < this->Values.TissueFraction)
+        {
+          voxels[i] = 1;
+        }
+      }
+    });
+}
+
+std::vector<unsigned char> IncompleteShape::Sample(Execution& execution) const
+{
+  const std::array<int, 3>& n = this->Dimensions;
+  const std::int64_t count = static_cast<std::int64_t>(n[0]) * n[1] * n[2];
+  std::vector<unsigned char> voxels(count, 0);
+  const Execution::NestedStages nested(execution);
+  execution.SetStage(0, 0.2);
+  this->AddSurface(voxels, execution);
 
   std::vector<std::int64_t> object;
   for (std::int64_t i = 0; i < count; ++i)
@@ -206,67 +277,33 @@ std::vector<unsigned char> IncompleteShape::Sample(Execution& execution) const
       object.push_back(i);
     }
   }
-  const CounterNoise choice(this->Values.Seed, 0);
-  std::uint64_t drawn = 0;
-  const auto draw = [&](std::int64_t below)
-  { return static_cast<std::int64_t>(choice.Uniform(drawn++) * static_cast<double>(below)); };
-  std::int64_t present = static_cast<std::int64_t>(object.size());
+  Draws draws(this->Values.Seed);
+  auto present = static_cast<std::int64_t>(object.size());
   const auto kept = std::llround(this->Values.PresentFraction * static_cast<double>(present));
-  const std::array<double, 2>& radii = this->Values.PatchRadii;
   execution.SetStage(0.2, 0.9);
-  if (this->Values.Patches && radii[1] >= 1) // smaller ones are single voxels
+  if (this->Values.Patches && this->Values.PatchRadii[1] >= 1) // smaller ones are single voxels
   {
-    const auto removed = static_cast<double>(present - kept);
-    while (present > kept)
-    {
-      execution.Report(1 - static_cast<double>(present - kept) / removed);
-      const auto centre = at(object[draw(static_cast<std::int64_t>(object.size()))]);
-      const double radius = radii[0] + (radii[1] - radii[0]) * choice.Uniform(drawn++);
-      for (std::int64_t i : object)
-      {
-        const auto p = at(i);
-        const double distance =
-          std::hypot(std::hypot(p[0] - centre[0], p[1] - centre[1]), p[2] - centre[2]);
-        if (voxels[i] && distance <= radius)
-        {
-          voxels[i] = 0;
-          --present;
-        }
-      }
-    }
+    present = this->RemovePatches(object, kept, draws, voxels, execution);
   }
   else
   {
     // the first of a random permutation stay
     for (std::int64_t a = 0; a < present; ++a)
     {
-      std::swap(object[a], object[a + draw(present - a)]);
+      std::swap(object[a], object[a + draws.Below(present - a)]);
       voxels[object[a]] = a < kept;
     }
     present = kept;
   }
   if (this->Values.TissueFraction > 0)
   {
-    const CounterNoise echo(this->Values.Seed, 1);
     execution.SetStage(0.9, 1);
-    execution.For(count, 1 << 14,
-      [&](std::int64_t begin, std::int64_t end)
-      {
-        for (std::int64_t i = begin; i < end; ++i)
-        {
-          const auto p = at(i);
-          const bool inside = this->GetDistance(p[0], p[1], p[2]) < -0.5;
-          if (inside && echo.Uniform(i) < this->Values.TissueFraction)
-          {
-            voxels[i] = 1;
-          }
-        }
-      });
+    this->AddTissue(voxels, execution);
   }
   const auto outliers = std::llround(this->Values.OutlierFraction * static_cast<double>(present));
   for (std::int64_t o = 0; o < outliers; ++o)
   {
-    voxels[draw(count)] = 1;
+    voxels[draws.Below(count)] = 1;
   }
   return voxels;
 }

@@ -61,6 +61,15 @@ public:
   std::vector<unsigned char> Sample(Execution& execution) const;
 
 private:
+  class Draws;
+  std::array<double, 3> GetPosition(std::int64_t voxel) const; // from the centre of the grid
+  // Steps of Sample.
+  void AddSurface(std::vector<unsigned char>& voxels, Execution& execution) const;
+  // Until no more than so many voxels of the object are there; returns how many.
+  std::int64_t RemovePatches(const std::vector<std::int64_t>& object, std::int64_t kept,
+    Draws& draws, std::vector<unsigned char>& voxels, Execution& execution) const;
+  void AddTissue(std::vector<unsigned char>& voxels, Execution& execution) const;
+
   Parameters Values;
   std::array<int, 3> Dimensions;
   std::array<double, 3> Half; ///< of the shape's box
