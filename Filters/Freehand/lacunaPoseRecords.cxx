@@ -130,9 +130,19 @@ lacuna::PoseRecords::PoseRecords(vtkTable* data, std::size_t slices,
   }
   const Matches matches = Match(columns, others, table, slices, times, request);
   this->ToReference = lacuna::GatherPoses(table, matches);
+  this->SetStatus(matches, states);
+  this->ReadGate(columns, others.Gate, matches, request);
+  this->ReadFrameNumbers(columns, others.Frame, matches, request);
+  const bool own = request.MatchBy == lacuna::PoseRequest::Time || others.Time < 0;
+  this->Times = own ? times : Gather(columns.GetNumbers(others.Time), matches);
+}
 
+//------------------------------------------------------------------------------
+void lacuna::PoseRecords::SetStatus(
+  const std::vector<lacuna::PoseMatch>& matches, const std::vector<unsigned char>& states)
+{
   std::vector<std::size_t> alone;
-  for (std::size_t i = 0; i < slices; ++i)
+  for (std::size_t i = 0; i < matches.size(); ++i)
   {
     unsigned char status = lacuna::TrackedSlices::Valid;
     const std::ptrdiff_t row = matches[i].GetNearest();
@@ -155,12 +165,15 @@ lacuna::PoseRecords::PoseRecords(vtkTable* data, std::size_t slices,
     this->Warnings.push_back("the table has no pose for " + lacuna::DescribeItems("slice", alone) +
       "; flagged in SliceStatus");
   }
+}
 
-  this->ReadGate(columns, others.Gate, matches, request);
-  const std::vector<double> frames = others.Frame >= 0
-    ? Gather(columns.GetNumbers(others.Frame), matches)
-    : std::vector<double>(slices, NoNumber);
-  for (std::size_t i = 0; i < slices; ++i)
+//------------------------------------------------------------------------------
+void lacuna::PoseRecords::ReadFrameNumbers(const lacuna::PoseColumnReader& columns, int column,
+  const std::vector<lacuna::PoseMatch>& matches, const lacuna::PoseRequest& request)
+{
+  const std::vector<double> frames = column >= 0 ? Gather(columns.GetNumbers(column), matches)
+                                                 : std::vector<double>(matches.size(), NoNumber);
+  for (std::size_t i = 0; i < matches.size(); ++i)
   {
     const bool number = frames[i] == std::floor(frames[i]) && std::abs(frames[i]) < 2147483648.0;
     this->FrameNumbers.push_back(number ? static_cast<int>(frames[i])
@@ -168,8 +181,6 @@ lacuna::PoseRecords::PoseRecords(vtkTable* data, std::size_t slices,
         ? request.FirstFrameNumber + static_cast<int>(i)
         : static_cast<int>(i));
   }
-  const bool own = request.MatchBy == lacuna::PoseRequest::Time || others.Time < 0;
-  this->Times = own ? times : Gather(columns.GetNumbers(others.Time), matches);
 }
 
 //------------------------------------------------------------------------------

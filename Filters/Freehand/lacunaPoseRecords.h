@@ -53,6 +53,10 @@ struct PoseRecords
   std::vector<std::string> Warnings;
 
 private:
+  /// states: of the rows
+  void SetStatus(const std::vector<PoseMatch>& matches, const std::vector<unsigned char>& states);
+  void ReadFrameNumbers(const PoseColumnReader& columns, int column,
+    const std::vector<PoseMatch>& matches, const PoseRequest& request);
   void ReadGate(const PoseColumnReader& columns, int column, const std::vector<PoseMatch>& matches,
     const PoseRequest& request);
 };

@@ -192,42 +192,62 @@ std::vector<bool> lacuna::SliceImages::FindSlicesToCome(const lacuna::TrackedSli
 }
 
 //------------------------------------------------------------------------------
-std::vector<lacuna::SliceImages::Candidate> lacuna::SliceImages::FindCandidates(
-  const lacuna::TrackedSlices& tracked, const lacuna::SliceSelection& selection)
+// By number in the sweep: the layer of the stack, from 0 on; -1: it has none.
+std::vector<std::int64_t> lacuna::SliceImages::FindLayers(vtkIdType slices) const
 {
-  vtkImageData* const stack = this->Stack;
-  const lacuna::ScalarType type = lacuna::ArrayScalarType::Get(this->GreyLevels);
-  const auto* pixels = static_cast<const unsigned char*>(this->GreyLevels->GetVoidPointer(0));
-  const int* extent = this->Extent;
-  const std::array<double, 3>& origin = this->Origin;
-  const std::array<double, 3>& spacing = this->Spacing;
-  CheckClip(selection.Clip);
-  const Range columns =
-    Clip(extent, origin[0], spacing[0], 0, selection.Clip[0], selection.Clip[2]);
-  const Range rows =
-    Clip(extent + 2, origin[1], spacing[1], 1, selection.Clip[1], selection.Clip[3]);
-  this->Window.Origin = { origin[0] + spacing[0] * columns.First,
-    origin[1] + spacing[1] * rows.First };
-  this->Window.Step = { spacing[0], spacing[1] };
-  const lacuna::Matrix4 windowToImage = this->Window.GetMatrix();
-  vtkDataArray* const frames = lacuna::FieldData::Find(
-    stack, lacuna::TrackedSlices::FrameNumberName, 1, tracked.GetNumberOfSlices());
-
-  const std::int64_t width = extent[1] - extent[0] + 1;
-  const std::int64_t height = extent[3] - extent[2] + 1;
-  std::vector<std::int64_t> layers(tracked.GetNumberOfSlices(), -1); // of the stack
-  for (int k = extent[4]; k <= extent[5]; ++k)
+  std::vector<std::int64_t> layers(slices, -1);
+  for (int k = this->Extent[4]; k <= this->Extent[5]; ++k)
   {
-    const vtkIdType number = lacuna::TrackedSlices::GetSliceNumber(
-      origin[2] + spacing[2] * k, tracked.GetNumberOfSlices());
+    const vtkIdType number =
+      lacuna::TrackedSlices::GetSliceNumber(this->Origin[2] + this->Spacing[2] * k, slices);
     std::int64_t& layer = layers[number];
     if (layer >= 0)
     {
       throw std::runtime_error("the stack holds slice " + std::to_string(number) +
         " twice; its z spacing must be 1 or more");
     }
-    layer = k - extent[4];
+    layer = k - this->Extent[4];
   }
+  return layers;
+}
+
+//------------------------------------------------------------------------------
+// Cuts the window out of the first layer, which as yet has no place and no name.
+lacuna::SliceImage lacuna::SliceImages::CutFirstLayer(const std::array<int, 4>& clip)
+{
+  const int* extent = this->Extent;
+  CheckClip(clip);
+  const Range columns = Clip(extent, this->Origin[0], this->Spacing[0], 0, clip[0], clip[2]);
+  const Range rows = Clip(extent + 2, this->Origin[1], this->Spacing[1], 1, clip[1], clip[3]);
+  this->Window.Origin = { this->Origin[0] + this->Spacing[0] * columns.First,
+    this->Origin[1] + this->Spacing[1] * rows.First };
+  this->Window.Step = { this->Spacing[0], this->Spacing[1] };
+  lacuna::SliceImage slice;
+  slice.Type = lacuna::ArrayScalarType::Get(this->GreyLevels);
+  slice.RowStride = extent[1] - extent[0] + 1;
+  slice.Width = columns.Last - columns.First + 1;
+  slice.Height = rows.Last - rows.First + 1;
+  if (!this->Stream)
+  {
+    slice.Pixels = static_cast<const unsigned char*>(this->GreyLevels->GetVoidPointer(0)) +
+      ((rows.First - extent[2]) * slice.RowStride + columns.First - extent[0]) *
+        static_cast<std::int64_t>(lacuna::GetScalarSize(slice.Type));
+  }
+  return slice;
+}
+
+//------------------------------------------------------------------------------
+std::vector<lacuna::SliceImages::Candidate> lacuna::SliceImages::FindCandidates(
+  const lacuna::TrackedSlices& tracked, const lacuna::SliceSelection& selection)
+{
+  vtkImageData* const stack = this->Stack;
+  const lacuna::SliceImage first = this->CutFirstLayer(selection.Clip);
+  const std::int64_t layerBytes = first.RowStride * (this->Extent[3] - this->Extent[2] + 1) *
+    static_cast<std::int64_t>(lacuna::GetScalarSize(first.Type));
+  const lacuna::Matrix4 windowToImage = this->Window.GetMatrix();
+  vtkDataArray* const frames = lacuna::FieldData::Find(
+    stack, lacuna::TrackedSlices::FrameNumberName, 1, tracked.GetNumberOfSlices());
+  const std::vector<std::int64_t> layers = this->FindLayers(tracked.GetNumberOfSlices());
   const auto orExpected = static_cast<unsigned char>(
     selection.AcceptedFlags | (selection.IsReplay ? lacuna::TrackedSlices::ImageInvalid : 0));
   std::vector<bool> isToCome(layers.size(), false);
@@ -261,22 +281,15 @@ std::vector<lacuna::SliceImages::Candidate> lacuna::SliceImages::FindCandidates(
     {
       Candidate candidate;
       candidate.Number = number;
-      candidate.Layer = static_cast<int>(layer) + extent[4];
+      candidate.Layer = static_cast<int>(layer) + this->Extent[4];
       candidate.HasImage = isUsable;
       candidate.IsGatedOut = isGatedOut;
-      lacuna::SliceImage& slice = candidate.Slice;
-      slice.Type = type;
-      if (isUsable && !this->Stream)
-      {
-        slice.Pixels = pixels +
-          (layer * height * width + (rows.First - extent[2]) * width + columns.First - extent[0]) *
-            static_cast<std::int64_t>(lacuna::GetScalarSize(type));
-      }
-      slice.RowStride = width;
-      slice.Width = columns.Last - columns.First + 1;
-      slice.Height = rows.Last - rows.First + 1;
-      slice.PixelToReference = tracked.GetImageToReference(number) * windowToImage;
-      slice.Label = lacuna::PoseJudge::MakeLabel(number, frames, selection.Suffix);
+      candidate.Slice = first;
+      candidate.Slice.Pixels = isUsable && first.Pixels
+        ? static_cast<const unsigned char*>(first.Pixels) + layer * layerBytes
+        : nullptr;
+      candidate.Slice.PixelToReference = tracked.GetImageToReference(number) * windowToImage;
+      candidate.Slice.Label = lacuna::PoseJudge::MakeLabel(number, frames, selection.Suffix);
       candidates.push_back(candidate);
     }
   }
@@ -337,7 +350,28 @@ void lacuna::SliceImages::FindSweeps(const lacuna::TrackedSlices& tracked,
   const lacuna::SliceSelection& selection, const std::vector<Candidate>& gatedOut,
   std::vector<Candidate>& candidates)
 {
-  // all slices of which it is known where the probe was
+  this->PartSweeps(tracked, FindKnown(tracked, gatedOut, candidates));
+  if (!selection.HasSweepEnds && this->Sweeps.size() > 1)
+  {
+    this->JoinSweeps();
+  }
+  std::size_t sweep = 1;
+  for (Candidate& candidate : candidates)
+  {
+    if (sweep < this->Sweeps.size() && candidate.Number == this->Sweeps[sweep].First)
+    {
+      candidate.Slice.BeginsSweep = true;
+      ++sweep;
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
+// All slices of which it is known where the probe was, by number.
+std::vector<const lacuna::SliceImages::Candidate*> lacuna::SliceImages::FindKnown(
+  const lacuna::TrackedSlices& tracked, const std::vector<Candidate>& gatedOut,
+  const std::vector<Candidate>& candidates)
+{
   std::vector<lacuna::PoseJudge::Slice> others;
   for (const Candidate& candidate : gatedOut)
   {
@@ -362,6 +396,14 @@ void lacuna::SliceImages::FindSweeps(const lacuna::TrackedSlices& tracked,
   }
   std::sort(known.begin(), known.end(),
     [](const Candidate* a, const Candidate* b) { return a->Number < b->Number; });
+  return known;
+}
+
+//------------------------------------------------------------------------------
+// Sets Sweeps; slices that are gated out only say where the probe was.
+void lacuna::SliceImages::PartSweeps(
+  const lacuna::TrackedSlices& tracked, const std::vector<const Candidate*>& known)
+{
   const bool hasTimes = lacuna::FieldData::Find(this->Stack, lacuna::TrackedSlices::TimestampName,
                           1, tracked.GetNumberOfSlices()) != nullptr;
   std::vector<lacuna::SlicePlace> places;
@@ -406,26 +448,19 @@ void lacuna::SliceImages::FindSweeps(const lacuna::TrackedSlices& tracked,
     before = i;
     isEnded = false;
   }
-  if (!selection.HasSweepEnds && this->Sweeps.size() > 1)
+}
+
+//------------------------------------------------------------------------------
+void lacuna::SliceImages::JoinSweeps()
+{
+  this->JoinedEnds = this->DescribeEnds();
+  Sweep all = this->Sweeps.front();
+  all.Last = this->Sweeps.back().Last;
+  for (const Sweep& sweep : this->Sweeps)
   {
-    this->JoinedEnds = this->DescribeEnds();
-    Sweep all = this->Sweeps.front();
-    all.Last = this->Sweeps.back().Last;
-    for (const Sweep& sweep : this->Sweeps)
-    {
-      all.WidestStep = std::max({ all.WidestStep, sweep.WidestStep, sweep.End.Distance });
-    }
-    this->Sweeps = { all };
+    all.WidestStep = std::max({ all.WidestStep, sweep.WidestStep, sweep.End.Distance });
   }
-  std::size_t sweep = 1;
-  for (Candidate& candidate : candidates)
-  {
-    if (sweep < this->Sweeps.size() && candidate.Number == this->Sweeps[sweep].First)
-    {
-      candidate.Slice.BeginsSweep = true;
-      ++sweep;
-    }
-  }
+  this->Sweeps = { all };
 }
 
 //------------------------------------------------------------------------------

@@ -134,10 +134,16 @@ private:
   std::array<double, 3> Origin, Spacing;
   std::vector<int> Layers; // of Slices: indices along z
   std::vector<bool> FindSlicesToCome(const TrackedSlices& tracked) const;
+  std::vector<std::int64_t> FindLayers(vtkIdType slices) const;
+  SliceImage CutFirstLayer(const std::array<int, 4>& clip);
   std::vector<Candidate> FindCandidates(
     const TrackedSlices& tracked, const SliceSelection& selection);
   void FindSweeps(const TrackedSlices& tracked, const SliceSelection& selection,
     const std::vector<Candidate>& gatedOut, std::vector<Candidate>& candidates);
+  static std::vector<const Candidate*> FindKnown(const TrackedSlices& tracked,
+    const std::vector<Candidate>& gatedOut, const std::vector<Candidate>& candidates);
+  void PartSweeps(const TrackedSlices& tracked, const std::vector<const Candidate*>& known);
+  void JoinSweeps();
   std::string DescribeEnds() const;
   void DropBadPoses(const TrackedSlices& tracked, std::vector<Candidate>& candidates,
     const SliceSelection& selection);

@@ -13,9 +13,9 @@
 #include "vtkFieldData.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
-#include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkPolyData.h"
+#include "vtkSmartPointer.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkStringArray.h"
 #include "vtkTable.h"
@@ -93,13 +93,19 @@ lacuna::Vec2 GetSize(vtkImageData* slices)
   const lacuna::Vec2 size{ bounds[1] - bounds[0] + 1, bounds[3] - bounds[2] + 1 };
   return std::min(size[0], size[1]) >= SmallestPicture ? size : lacuna::Vec2{ 0, 0 };
 }
+
 // With what is known of slices that were not looked at, which often is why there are too few picks.
-lacuna::ProbeCalibration SolveOrTell(const std::vector<lacuna::CalibrationPick>& picks,
+lacuna::ProbeCalibration SolveOrTell(const Picks& picks,
   const lacuna::ProbeCalibrationOptions& options, const std::vector<std::string>& known)
 {
+  std::vector<lacuna::CalibrationPick> kernelPicks;
+  for (const lacuna::SlicePick& pick : picks)
+  {
+    kernelPicks.push_back(pick.Pick);
+  }
   try
   {
-    return lacuna::ProbeCalibration::Solve(picks, options);
+    return lacuna::ProbeCalibration::Solve(kernelPicks, options);
   }
   catch (const std::invalid_argument& error)
   {
@@ -112,6 +118,67 @@ lacuna::ProbeCalibration SolveOrTell(const std::vector<lacuna::CalibrationPick>&
   }
 }
 
+// mm: at the worst corner of the slices, or at the stylus's tip.
+double GetExpectedError(const lacuna::ProbeCalibration& found, vtkImageData* slices, bool isStylus)
+{
+  double worst = 0;
+  for (const lacuna::Vec2& corner : GetCorners(slices))
+  {
+    worst = std::max(worst, found.GetExpectedError(isStylus ? lacuna::Vec2{ 0, 0 } : corner));
+  }
+  return worst;
+}
+
+// Where the calibration puts the slices, or the stylus's tip.
+void SetPlaces(const lacuna::ProbePoses& poses, const lacuna::ProbeCalibration& found,
+  bool isStylus, vtkImageData* slices)
+{
+  if (isStylus)
+  {
+    const lacuna::Vec3 tip = found.ImageToProbe.Column(3);
+    lacuna::FieldData::Set(slices, "StylusTip", { tip[0], tip[1], tip[2] }, 3);
+    return;
+  }
+  std::vector<lacuna::Matrix4> imageToReference;
+  for (vtkIdType i = 0; i < poses.GetCount(); ++i)
+  {
+    imageToReference.push_back(poses.Get(i) * found.ImageToProbe);
+  }
+  lacuna::FieldData::SetMatrices(
+    slices, lacuna::TrackedSlices::ImageToReferenceName, imageToReference);
+  lacuna::FieldData::SetMatrices(
+    slices, lacuna::TrackedSlices::ImageToProbeName, { found.ImageToProbe });
+}
+
+// The figures of the calibration, which each output has.
+void SetFigures(
+  const lacuna::ProbeCalibration& found, double expectedError, bool isStylus, vtkDataObject* output)
+{
+  if (!isStylus)
+  {
+    const lacuna::Vec3 angles = found.GetAngles();
+    lacuna::FieldData::Set(
+      output, "PixelSpacing", { found.PixelSpacing[0], found.PixelSpacing[1] }, 2);
+    lacuna::FieldData::Set(output, "ImageAngles", { angles[0], angles[1], angles[2] }, 3);
+  }
+  lacuna::FieldData::Set(output, "CalibrationRms", { found.Rms }, 1);
+  lacuna::FieldData::Set(output, "CalibrationSpread", { found.Spread }, 1);
+  lacuna::FieldData::Set(output, "ExpectedError", { expectedError }, 1);
+  lacuna::FieldData::Set(output, "Views", { static_cast<double>(found.Views) }, 1);
+  lacuna::FieldData::Set(output, "Condition", { found.Condition }, 1);
+  lacuna::FieldData::Set(output, "RunnerUpRms", { found.RunnerUpRms }, 1);
+}
+
+vtkSmartPointer<vtkStringArray> MakeAdviceArray(const std::vector<std::string>& advice)
+{
+  auto sentences = vtkSmartPointer<vtkStringArray>::New();
+  sentences->SetName("Advice");
+  for (const std::string& sentence : advice)
+  {
+    sentences->InsertNextValue(sentence);
+  }
+  return sentences;
+}
 }
 
 vtkStandardNewMacro(vtkLacunaProbeCalibration);
@@ -271,6 +338,26 @@ std::vector<lacuna::SlicePick> vtkLacunaProbeCalibration::FindPicks(
 }
 
 //------------------------------------------------------------------------------
+lacuna::ProbeCalibrationOptions vtkLacunaProbeCalibration::GetOptions() const
+{
+  lacuna::ProbeCalibrationOptions options;
+  options.OutlierLimit = this->OutlierLimit;
+  if (this->Method == StylusPivot)
+  {
+    return options;
+  }
+  if (!this->EstimateScale && this->PixelSpacing == 0)
+  {
+    throw std::runtime_error("PixelSpacing is 0: give the mm from pixel to pixel (see the depth "
+                             "scale of the scanner), or set EstimateScale");
+  }
+  options.PixelSpacing = { this->PixelSpacing,
+    this->RowSpacing == 0 ? this->PixelSpacing : this->RowSpacing };
+  options.EstimateScale = this->EstimateScale;
+  return options;
+}
+
+//------------------------------------------------------------------------------
 void vtkLacunaProbeCalibration::Make(
   const lacuna::Ports& ports, lacuna::AlgorithmExecution& execution)
 {
@@ -287,36 +374,14 @@ void vtkLacunaProbeCalibration::Make(
   const lacuna::ProbePoses poses(slices, array);
   std::vector<std::string> advice;
   const Picks picks = this->FindPicks(execution, slices, given, poses, advice);
-  if (!pivot && !this->EstimateScale && this->PixelSpacing == 0)
-  {
-    throw std::runtime_error("PixelSpacing is 0: give the mm from pixel to pixel (see the depth "
-                             "scale of the scanner), or set EstimateScale");
-  }
-
-  lacuna::ProbeCalibrationOptions options;
-  if (!pivot)
-  {
-    options.PixelSpacing = { this->PixelSpacing,
-      this->RowSpacing == 0 ? this->PixelSpacing : this->RowSpacing };
-    options.EstimateScale = this->EstimateScale;
-  }
-  options.OutlierLimit = this->OutlierLimit;
-  std::vector<lacuna::CalibrationPick> kernelPicks;
-  for (const lacuna::SlicePick& pick : picks)
-  {
-    kernelPicks.push_back(pick.Pick);
-  }
-  const lacuna::ProbeCalibration found = SolveOrTell(kernelPicks, options, advice);
+  const lacuna::ProbeCalibrationOptions options = this->GetOptions();
+  const lacuna::ProbeCalibration found = SolveOrTell(picks, options, advice);
   lacuna::CalibrationReport::Image image;
   image.Size = pivot ? lacuna::Vec2{ 0, 0 } : GetSize(slices);
   image.EstimateScale = options.EstimateScale;
   image.ExpectedRatio =
     this->PixelSpacing > 0 && this->RowSpacing > 0 ? this->RowSpacing / this->PixelSpacing : 1;
-  for (const lacuna::Vec2& corner : GetCorners(slices))
-  {
-    image.ExpectedError =
-      std::max(image.ExpectedError, found.GetExpectedError(pivot ? lacuna::Vec2{ 0, 0 } : corner));
-  }
+  image.ExpectedError = GetExpectedError(found, slices, pivot);
   const lacuna::CalibrationReport report(found, picks, image);
   const std::vector<std::string> more = report.GetAdvice();
   advice.insert(advice.begin(), more.begin(), more.end());
@@ -332,87 +397,55 @@ void vtkLacunaProbeCalibration::Make(
 
   auto* calibrated = ports.GetOutput<vtkImageData>(0);
   calibrated->ShallowCopy(slices);
-  if (pivot)
-  {
-    const lacuna::Vec3 tip = found.ImageToProbe.Column(3);
-    lacuna::FieldData::Set(calibrated, "StylusTip", { tip[0], tip[1], tip[2] }, 3);
-  }
-  else
-  {
-    std::vector<lacuna::Matrix4> imageToReference;
-    for (vtkIdType i = 0; i < poses.GetCount(); ++i)
-    {
-      imageToReference.push_back(poses.Get(i) * found.ImageToProbe);
-    }
-    lacuna::FieldData::SetMatrices(
-      calibrated, lacuna::TrackedSlices::ImageToReferenceName, imageToReference);
-    lacuna::FieldData::SetMatrices(
-      calibrated, lacuna::TrackedSlices::ImageToProbeName, { found.ImageToProbe });
-  }
-  auto* residuals = ports.GetOutput<vtkTable>(1);
-  auto* picture = ports.GetOutput<vtkPolyData>(2);
-  auto* map = ports.GetOutput<vtkImageData>(3);
-  auto* marks = ports.GetOutput<vtkPolyData>(4);
-  lacuna::CalibrationOutputs::FillErrorMap(slices, found, map);
+  SetPlaces(poses, found, pivot, calibrated);
+  lacuna::CalibrationOutputs::FillErrorMap(slices, found, ports.GetOutput<vtkImageData>(3));
   if (first)
   {
-    lacuna::CalibrationOutputs::FillTable(picks, found, residuals);
-    lacuna::CalibrationOutputs::FillPhantom(picks, found, picture);
-    lacuna::CalibrationOutputs::FillSlices(picks, found, marks);
+    lacuna::CalibrationOutputs::FillTable(picks, found, ports.GetOutput<vtkTable>(1));
+    lacuna::CalibrationOutputs::FillPhantom(picks, found, ports.GetOutput<vtkPolyData>(2));
+    lacuna::CalibrationOutputs::FillSlices(picks, found, ports.GetOutput<vtkPolyData>(4));
   }
-
-  const lacuna::Vec3 angles = found.GetAngles();
-  vtkNew<vtkStringArray> sentences;
-  sentences->SetName("Advice");
-  for (const std::string& sentence : advice)
+  const vtkSmartPointer<vtkStringArray> sentences = MakeAdviceArray(advice);
+  for (int port = 0; port < this->GetNumberOfOutputPorts(); ++port)
   {
-    sentences->InsertNextValue(sentence);
-  }
-  for (vtkDataObject* output :
-    std::initializer_list<vtkDataObject*>{ calibrated, residuals, picture, map, marks })
-  {
-    if (!pivot)
-    {
-      lacuna::FieldData::Set(
-        output, "PixelSpacing", { found.PixelSpacing[0], found.PixelSpacing[1] }, 2);
-      lacuna::FieldData::Set(output, "ImageAngles", { angles[0], angles[1], angles[2] }, 3);
-    }
-    lacuna::FieldData::Set(output, "CalibrationRms", { found.Rms }, 1);
-    lacuna::FieldData::Set(output, "CalibrationSpread", { found.Spread }, 1);
-    lacuna::FieldData::Set(output, "ExpectedError", { image.ExpectedError }, 1);
-    lacuna::FieldData::Set(output, "Views", { static_cast<double>(found.Views) }, 1);
-    lacuna::FieldData::Set(output, "Condition", { found.Condition }, 1);
-    lacuna::FieldData::Set(output, "RunnerUpRms", { found.RunnerUpRms }, 1);
+    auto* output = ports.GetOutput<vtkDataObject>(port);
+    SetFigures(found, image.ExpectedError, pivot, output);
     output->GetFieldData()->AddArray(sentences);
   }
   if (first && !this->OutputFileName.empty())
   {
-    const char* from = pivot ? "StylusTip" : "Image";
-    const std::string frame = array;
-    const std::string to = frame.substr(0, frame.find("ToTracker"));
-    std::string refusal = report.GetRefusal();
-    refusal += refusal.empty() ? "" : ". Look at Advice";
-    if (refusal.empty() && !lacuna::CalibrationReport::MayReplace(this->OutputFileName, from, to))
+    this->WriteFile(report, array, advice);
+  }
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaProbeCalibration::WriteFile(const lacuna::CalibrationReport& report,
+  const std::string& frame, const std::vector<std::string>& advice)
+{
+  const char* from = this->Method == StylusPivot ? "StylusTip" : "Image";
+  const std::string to = frame.substr(0, frame.find("ToTracker"));
+  std::string refusal = report.GetRefusal();
+  refusal += refusal.empty() ? "" : ". Look at Advice";
+  if (refusal.empty() && !lacuna::CalibrationReport::MayReplace(this->OutputFileName, from, to))
+  {
+    refusal = "it holds something else, or more, than Probe Calibration wrote for '" +
+      std::string(from) + "' to '" + to + "'. Set another OutputFileName";
+  }
+  try
+  {
+    if (refusal.empty())
     {
-      refusal = "it holds something else, or more, than Probe Calibration wrote for '" +
-        std::string(from) + "' to '" + to + "'. Set another OutputFileName";
+      report.Write(this->OutputFileName, from, to, advice);
     }
-    try
-    {
-      if (refusal.empty())
-      {
-        report.Write(this->OutputFileName, from, to, advice);
-      }
-    }
-    catch (const lacuna::FileError& e)
-    {
-      refusal = e.what(); // the outputs are there all the same
-    }
-    if (!refusal.empty())
-    {
-      vtkErrorMacro(<< lacuna::ToPrintable("'" + std::string(this->OutputFileName) +
-                      "' is not written, and kept if it is there: " + refusal));
-    }
+  }
+  catch (const lacuna::FileError& e)
+  {
+    refusal = e.what(); // the outputs are there all the same
+  }
+  if (!refusal.empty())
+  {
+    vtkErrorMacro(<< lacuna::ToPrintable("'" + std::string(this->OutputFileName) +
+                    "' is not written, and kept if it is there: " + refusal));
   }
 }
 

@@ -60,13 +60,9 @@
 namespace lacuna
 {
 class AlgorithmExecution;
-}
-namespace lacuna
-{
+class CalibrationReport;
+struct ProbeCalibrationOptions;
 class ProbePoses;
-}
-namespace lacuna
-{
 struct SlicePick;
 }
 
@@ -168,6 +164,10 @@ private:
   std::vector<lacuna::SlicePick> FindPicks(lacuna::AlgorithmExecution& execution,
     vtkImageData* slices, vtkDataObject* given, const lacuna::ProbePoses& poses,
     std::vector<std::string>& advice);
+  lacuna::ProbeCalibrationOptions GetOptions() const; // throws
+  // Or an error that says why not. The frame is the array of the poses that were calibrated.
+  void WriteFile(const lacuna::CalibrationReport& report, const std::string& frame,
+    const std::vector<std::string>& advice);
 
   vtkLacunaProbeCalibration(const vtkLacunaProbeCalibration&) = delete;
   void operator=(const vtkLacunaProbeCalibration&) = delete;

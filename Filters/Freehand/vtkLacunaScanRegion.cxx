@@ -294,6 +294,29 @@ void AddRegion(Report& report, const lacuna::ScanRegion& region, const Frames& f
       "widths of a pixel; Swept Volume takes mm (FanRadii)");
   }
 }
+
+void AddRulers(Report& report, Picture& picture, const lacuna::DepthRuler& ruler)
+{
+  const lacuna::TickRow* rows[2] = { &ruler.Depth, &ruler.Width };
+  static const char* const names[2] = { "DepthTick", "WidthTick" };
+  for (int r = 0; r < 2; ++r)
+  {
+    if (rows[r]->IsFound)
+    {
+      report.Add(names[r], { rows[r]->Pitch, rows[r]->PitchError }, 1e-4, rows[r]->Text.c_str());
+      picture.AddTicks(*rows[r], r == 0);
+    }
+    else
+    {
+      report.AddText(names[r], "not found", rows[r]->Text);
+    }
+  }
+  if (ruler.Depth.IsFound && ruler.Width.IsFound)
+  {
+    report.Add("PixelAspect", { ruler.Width.Pitch / ruler.Depth.Pitch }, 1e-4,
+      "height by width of a pixel, if a tick is as many mm in both rulers");
+  }
+}
 }
 
 vtkStandardNewMacro(vtkLacunaScanRegion);
@@ -360,27 +383,9 @@ void vtkLacunaScanRegion::Make(const lacuna::Ports& ports, lacuna::AlgorithmExec
 
   Report report;
   AddRegion(report, region, frames);
-  const lacuna::TickRow* rows[2] = { &ruler.Depth, &ruler.Width };
-  static const char* const names[2] = { "DepthTick", "WidthTick" };
   Picture picture(frames);
   picture.AddRegion(region.Fan, this->PixelAspect);
-  for (int r = 0; r < 2; ++r)
-  {
-    if (rows[r]->IsFound)
-    {
-      report.Add(names[r], { rows[r]->Pitch, rows[r]->PitchError }, 1e-4, rows[r]->Text.c_str());
-      picture.AddTicks(*rows[r], r == 0);
-    }
-    else
-    {
-      report.AddText(names[r], "not found", rows[r]->Text);
-    }
-  }
-  if (ruler.Depth.IsFound && ruler.Width.IsFound)
-  {
-    report.Add("PixelAspect", { ruler.Width.Pitch / ruler.Depth.Pitch }, 1e-4,
-      "height by width of a pixel, if a tick is as many mm in both rulers");
-  }
+  AddRulers(report, picture, ruler);
   if (this->TickLength > 0 && !ruler.Depth.IsFound)
   {
     vtkWarningMacro(<< "TickLength is of no use: " << ruler.Depth.Text);

@@ -155,7 +155,72 @@ std::vector<vtkSmartPointer<vtkDataObject>> FindOrigins(const lacuna::SweptVolum
   }
   return origins;
 }
+
+void CheckAnnounced(const lacuna::SweptVolumePlan& plan, vtkInformation* info)
+{
+  const lacuna::Vec3 origin = plan.GetOrigin();
+  const std::array<double, 9> direction = plan.GetDirection();
+  int whole[6];
+  info->Get(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), whole);
+  for (int a = 0; a < 3; ++a)
+  {
+    if (whole[2 * a + 1] != plan.Grid.Dimensions[a] - 1 ||
+      info->Get(vtkDataObject::ORIGIN())[a] != origin[a] ||
+      info->Get(vtkDataObject::SPACING())[a] != plan.Grid.Spacing[a] ||
+      !std::equal(direction.begin(), direction.end(), info->Get(vtkDataObject::DIRECTION())))
+    {
+      throw std::runtime_error("the slices have changed since the volume was announced (a "
+                               "source that changes with time?); set OutputBounds and "
+                               "OutputSpacing, so that they do not depend on the slices");
+    }
+  }
 }
+}
+
+// The arrays of the output.
+struct vtkLacunaSweptVolume::Voxels
+{
+  Voxels(vtkIdType size, int scalarType)
+  {
+    this->Intensity.TakeReference(vtkDataArray::CreateDataArray(scalarType));
+    this->Intensity->SetName("Intensity");
+    lacuna::Arrays::SetNumberOfTuples(this->Intensity, size);
+    this->Contributions->SetName("Contributions");
+    lacuna::Arrays::SetNumberOfTuples(this->Contributions, size);
+    this->Mask->SetName("vtkValidPointMask");
+    lacuna::Arrays::SetNumberOfTuples(this->Mask, size);
+  }
+
+  // Of volume; returns how many voxels stay empty since they are not finite.
+  std::int64_t Fill(const lacuna::SweptVolume& volume, lacuna::Execution& execution)
+  {
+    std::int64_t faults = 0;
+    switch (this->Intensity->GetDataType())
+    {
+      vtkTemplateMacro(
+        faults = volume.Write(static_cast<VTK_TT*>(this->Intensity->GetVoidPointer(0)),
+          this->Contributions->GetPointer(0), this->Mask->GetPointer(0), execution));
+    }
+    return faults;
+  }
+
+  bool IsEmpty() const
+  {
+    const char* const filled = this->Mask->GetPointer(0);
+    return !std::count(filled, filled + this->Mask->GetNumberOfTuples(), 1);
+  }
+
+  void Set(vtkImageData* output)
+  {
+    output->GetPointData()->SetScalars(this->Intensity);
+    output->GetPointData()->AddArray(this->Contributions);
+    output->GetPointData()->AddArray(this->Mask);
+  }
+
+  vtkSmartPointer<vtkDataArray> Intensity;
+  vtkNew<vtkUnsignedIntArray> Contributions;
+  vtkNew<vtkCharArray> Mask;
+};
 
 vtkStandardNewMacro(vtkLacunaSweptVolume);
 
@@ -233,86 +298,32 @@ void vtkLacunaSweptVolume::Make(const lacuna::Ports& ports, lacuna::AlgorithmExe
     output->Initialize();
     return;
   }
-  std::map<std::string, std::string> warnings;
-  const lacuna::Vec3 origin = plan.GetOrigin();
-  const std::array<double, 9> direction = plan.GetDirection();
-  int whole[6];
-  info->Get(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), whole);
-  for (int a = 0; a < 3; ++a)
-  {
-    if (whole[2 * a + 1] != plan.Grid.Dimensions[a] - 1 ||
-      info->Get(vtkDataObject::ORIGIN())[a] != origin[a] ||
-      info->Get(vtkDataObject::SPACING())[a] != plan.Grid.Spacing[a] ||
-      !std::equal(direction.begin(), direction.end(), info->Get(vtkDataObject::DIRECTION())))
-    {
-      throw std::runtime_error("the slices have changed since the volume was announced (a "
-                               "source that changes with time?); set OutputBounds and "
-                               "OutputSpacing, so that they do not depend on the slices");
-    }
-  }
-
+  CheckAnnounced(plan, info);
   int updateExtent[6];
   info->Get(vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT(), updateExtent);
   output->SetExtent(updateExtent);
-  output->SetOrigin(origin.data());
-  output->SetDirectionMatrix(direction.data());
+  output->SetOrigin(plan.GetOrigin().data());
+  output->SetDirectionMatrix(plan.GetDirection().data());
   output->SetSpacing(plan.Grid.Spacing.data());
   const vtkIdType size = output->GetNumberOfPoints();
   lacuna::RequireMemory("this part of the volume", static_cast<double>(size) * plan.BytesPerVoxel,
     this->Growing->GetBytes());
-  vtkSmartPointer<vtkDataArray> intensity;
-  intensity.TakeReference(vtkDataArray::CreateDataArray(plan.ScalarType));
-  intensity->SetName("Intensity");
-  lacuna::Arrays::SetNumberOfTuples(intensity, size);
-  vtkNew<vtkUnsignedIntArray> contributions;
-  contributions->SetName("Contributions");
-  lacuna::Arrays::SetNumberOfTuples(contributions, size);
-  vtkNew<vtkCharArray> mask;
-  mask->SetName("vtkValidPointMask");
-  lacuna::Arrays::SetNumberOfTuples(mask, size);
-
+  Voxels voxels(size, plan.ScalarType);
+  std::map<std::string, std::string> warnings;
   if (HasPoints(updateExtent))
   {
     std::array<int, 6> extent;
     std::copy(updateExtent, updateExtent + 6, extent.begin());
-    lacuna::GrowingVolume::Sweeps sweeps;
-    for (const lacuna::SliceImages& sweep : plan.Sweeps)
-    {
-      sweeps.push_back(&sweep.Slices);
-    }
-    std::unique_ptr<lacuna::SweptVolume> streamed;
-    if (plan.HasStreams())
-    {
-      this->Growing = std::make_unique<lacuna::GrowingVolume>(); // without what was kept
-      streamed = FillFromStreams(plan, extent, execution, 0.9);
-    }
-    const lacuna::SweptVolume& volume = streamed
-      ? *streamed
-      : this->Growing->Update(
-          sweeps, plan.Grid, extent, plan.Options, plan.IsReplay, execution, 0, 0.9);
-    warnings = CheckVolume(volume, plan);
-    execution.SetStage(0.9, 1);
-    std::int64_t faults = 0;
-    switch (plan.ScalarType)
-    {
-      vtkTemplateMacro(faults = volume.Write(static_cast<VTK_TT*>(intensity->GetVoidPointer(0)),
-                         contributions->GetPointer(0), mask->GetPointer(0), execution));
-    }
-    if (faults > 0)
-    {
-      warnings["not finite"] = std::to_string(faults) +
-        " voxels stay empty, since their grey levels would not be finite numbers: some pixels "
-        "are not (NaN or infinite), or are too large for the output";
-    }
-    const char* const filled = mask->GetPointer(0);
+    warnings = this->Fill(plan, extent, execution, voxels);
+    int whole[6];
+    info->Get(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), whole);
     if (plan.Options.MaximumSliceGap > 0 && !plan.IsMoreToCome &&
       plan.Options.Interpolation == lacuna::SweptVolume::Method::BetweenSlices &&
-      std::equal(whole, whole + 6, updateExtent) && !std::count(filled, filled + size, 1))
+      std::equal(whole, whole + 6, updateExtent) && voxels.IsEmpty())
     {
       warnings["gap"] = "the volume is empty: all slices are further apart than "
                         "MaximumSliceGap, which is in mm; 0 is no limit";
     }
-    this->Growing->Finish();
   }
   std::vector<const lacuna::SliceImages*> swept;
   for (const lacuna::SliceImages& sweep : plan.Sweeps)
@@ -321,10 +332,39 @@ void vtkLacunaSweptVolume::Make(const lacuna::Ports& ports, lacuna::AlgorithmExe
   }
   this->RecordSweeps(swept, this->MaximumSliceGap, output, warnings);
   this->WarnOfNews(warnings, plan.LeftOut);
-  output->GetPointData()->SetScalars(intensity);
-  output->GetPointData()->AddArray(contributions);
-  output->GetPointData()->AddArray(mask);
+  voxels.Set(output);
   WriteFans(output, *this->Fans);
+}
+
+//------------------------------------------------------------------------------
+std::map<std::string, std::string> vtkLacunaSweptVolume::Fill(const lacuna::SweptVolumePlan& plan,
+  const std::array<int, 6>& extent, lacuna::AlgorithmExecution& execution, Voxels& voxels)
+{
+  lacuna::GrowingVolume::Sweeps sweeps;
+  for (const lacuna::SliceImages& sweep : plan.Sweeps)
+  {
+    sweeps.push_back(&sweep.Slices);
+  }
+  std::unique_ptr<lacuna::SweptVolume> streamed;
+  if (plan.HasStreams())
+  {
+    this->Growing = std::make_unique<lacuna::GrowingVolume>(); // without what was kept
+    streamed = FillFromStreams(plan, extent, execution, 0.9);
+  }
+  const lacuna::SweptVolume& volume = streamed ? *streamed
+                                               : this->Growing->Update(sweeps, plan.Grid, extent,
+                                                   plan.Options, plan.IsReplay, execution, 0, 0.9);
+  std::map<std::string, std::string> warnings = CheckVolume(volume, plan);
+  execution.SetStage(0.9, 1);
+  const std::int64_t faults = voxels.Fill(volume, execution);
+  if (faults > 0)
+  {
+    warnings["not finite"] = std::to_string(faults) +
+      " voxels stay empty, since their grey levels would not be finite numbers: some pixels "
+      "are not (NaN or infinite), or are too large for the output";
+  }
+  this->Growing->Finish();
+  return warnings;
 }
 
 //------------------------------------------------------------------------------

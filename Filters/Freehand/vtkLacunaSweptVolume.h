@@ -50,6 +50,8 @@
 #include "vtkLacunaSliceAlgorithm.h"
 #include "vtkSmartPointer.h" // for origins
 
+#include <array>
+#include <map>
 #include <memory>
 #include <string>
 
@@ -60,6 +62,7 @@ struct SweptVolumeFans;
 namespace lacuna
 {
 class GrowingVolume;
+class SweptVolumePlan;
 }
 
 class VTKLACUNAFILTERSFREEHAND_EXPORT vtkLacunaSweptVolume : public vtkLacunaSliceAlgorithm
@@ -229,6 +232,11 @@ protected:
 private:
   vtkLacunaSweptVolume(const vtkLacunaSweptVolume&) = delete;
   void operator=(const vtkLacunaSweptVolume&) = delete;
+
+  struct Voxels;
+  /// Fills a part of the volume; returns warnings by their kind.
+  std::map<std::string, std::string> Fill(const lacuna::SweptVolumePlan& plan,
+    const std::array<int, 6>& extent, lacuna::AlgorithmExecution& execution, Voxels& voxels);
 
   double OutputSpacing[3] = { 0, 0, 0 };
   double OutputBounds[6] = { 1, -1, 1, -1, 1, -1 };

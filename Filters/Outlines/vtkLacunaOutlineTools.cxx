@@ -16,12 +16,14 @@
 #include "vtkPointData.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
+#include "vtkSmartPointer.h"
 #include "vtkStripper.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -170,6 +172,192 @@ vtkSmartPointer<vtkImageData> GetFiltered(vtkImageData* picture, const int regio
   }
   image->Crop(extent);
   return image;
+}
+
+// Of the pixel nearest to a place, if there is one.
+std::optional<double> GetNearestLevel(vtkImageData* image, const double place[2])
+{
+  const double* origin = image->GetOrigin();
+  const double* spacing = image->GetSpacing();
+  const int* extent = image->GetExtent();
+  const int i = static_cast<int>(std::lround((place[0] - origin[0]) / spacing[0]));
+  const int j = static_cast<int>(std::lround((place[1] - origin[1]) / spacing[1]));
+  if (i < extent[0] || i > extent[1] || j < extent[2] || j > extent[3])
+  {
+    return {};
+  }
+  return image->GetScalarComponentAsDouble(i, j, extent[4], 0);
+}
+
+// The contours at a level, closed outside of the image; isBright: so that what is above the level is inside.
+vtkSmartPointer<vtkPolyData> FindContours(vtkImageData* image, double level, bool isBright)
+{
+  vtkDataArray* scalars = image->GetPointData()->GetScalars();
+  vtkNew<vtkImageData> real;
+  real->CopyStructure(image);
+  lacuna::Arrays::AddScalars(real, VTK_DOUBLE, "Intensity");
+  double range[2];
+  scalars->GetFiniteRange(range);
+  // so far that the border is crossed at half a pixel where the picture is just at the level
+  const double beyond =
+    isBright ? std::min(range[0], 2 * level - range[1]) : std::max(range[1], 2 * level - range[0]);
+  for (vtkIdType n = 0; n < scalars->GetNumberOfTuples(); ++n)
+  {
+    const double value = scalars->GetComponent(n, 0);
+    real->GetPointData()->GetScalars()->SetComponent(n, 0, std::isfinite(value) ? value : beyond);
+  }
+  const int* extent = image->GetExtent();
+  vtkNew<vtkImageConstantPad> pad;
+  pad->SetInputData(real);
+  pad->SetOutputWholeExtent(
+    extent[0] - 1, extent[1] + 1, extent[2] - 1, extent[3] + 1, extent[4], extent[5]);
+  pad->SetConstant(beyond);
+  vtkNew<vtkFlyingEdges2D> edges;
+  edges->SetInputConnection(pad->GetOutputPort());
+  edges->SetValue(0, level);
+  vtkNew<vtkStripper> lines;
+  lines->SetInputConnection(edges->GetOutputPort());
+  lines->SetMaximumLength(1000000);
+  lines->JoinContiguousSegmentsOn();
+  lines->Update();
+  return lines->GetOutput();
+}
+
+// Of the closed lines: the innermost around a place, or without one (null) that with the largest area.
+std::vector<Place> ChooseContour(vtkPolyData* contours, const double* place)
+{
+  vtkCellArray* cells = contours->GetLines();
+  std::vector<Place> best;
+  double bestArea = 0;
+  for (vtkIdType c = 0; c < cells->GetNumberOfCells(); ++c)
+  {
+    vtkIdType count = 0;
+    const vtkIdType* ids = nullptr;
+    cells->GetCellAtId(c, count, ids);
+    if (count < 4 || ids[0] != ids[count - 1])
+    {
+      continue;
+    }
+    std::vector<Place> line;
+    for (vtkIdType i = 0; i + 1 < count; ++i)
+    {
+      double x[3];
+      contours->GetPoint(ids[i], x);
+      line.push_back({ x[0], x[1] });
+    }
+    const double area = GetArea(line);
+    const bool isBetter =
+      place ? IsInside(line, place) && (best.empty() || area < bestArea) : area > bestArea;
+    if (isBetter)
+    {
+      best = std::move(line);
+      bestArea = area;
+    }
+  }
+  return best;
+}
+
+// Moves what is outside of the pixels' middles to their border.
+void Confine(std::vector<Place>& line, vtkImageData* image)
+{
+  const double* origin = image->GetOrigin();
+  const double* spacing = image->GetSpacing();
+  const int* extent = image->GetExtent();
+  const double low[2] = { origin[0] + extent[0] * spacing[0], origin[1] + extent[2] * spacing[1] };
+  const double high[2] = { origin[0] + extent[1] * spacing[0], origin[1] + extent[3] * spacing[1] };
+  for (Place& p : line)
+  {
+    for (int c = 0; c < 2; ++c)
+    {
+      p[c] = std::clamp(p[c], std::min(low[c], high[c]), std::max(low[c], high[c]));
+    }
+  }
+  line.erase(std::unique(line.begin(), line.end()), line.end());
+}
+
+// A picture, smoothed over one pixel.
+class SmoothPicture
+{
+public:
+  explicit SmoothPicture(vtkImageData* picture)
+  {
+    vtkNew<vtkImageData> real;
+    real->CopyStructure(picture);
+    lacuna::Arrays::AddScalars(real, VTK_FLOAT, "Intensity");
+    for (vtkIdType n = 0; n < picture->GetNumberOfPoints(); ++n)
+    {
+      real->GetPointData()->GetScalars()->SetComponent(
+        n, 0, picture->GetPointData()->GetScalars()->GetComponent(n, 0));
+    }
+    vtkNew<vtkImageGaussianSmooth> smooth;
+    smooth->SetDimensionality(2);
+    smooth->SetStandardDeviations(1, 1);
+    smooth->SetInputData(real);
+    smooth->Update();
+    this->Image = smooth->GetOutput();
+    this->Image->GetExtent(this->Extent);
+    this->Image->GetOrigin(this->Origin);
+    this->Image->GetSpacing(this->Spacing);
+    this->Values = static_cast<const float*>(this->Image->GetScalarPointer());
+  }
+
+  // Linear between pixels; not a number outside.
+  double At(const Place& x) const
+  {
+    const int columns = this->Extent[1] - this->Extent[0] + 1;
+    const int rows = this->Extent[3] - this->Extent[2] + 1;
+    const double u = (x[0] - this->Origin[0]) / this->Spacing[0] - this->Extent[0];
+    const double v = (x[1] - this->Origin[1]) / this->Spacing[1] - this->Extent[2];
+    if (!(u >= 0 && v >= 0 && u <= columns - 1 && v <= rows - 1))
+    {
+      return vtkMath::Nan();
+    }
+    const int i = std::min(static_cast<int>(u), columns - 2);
+    const int j = std::min(static_cast<int>(v), rows - 2);
+    if (i < 0 || j < 0)
+    {
+      return vtkMath::Nan();
+    }
+    const float* p = this->Values + static_cast<std::ptrdiff_t>(j) * columns + i;
+    const double a = u - i;
+    const double b = v - j;
+    return (1 - b) * ((1 - a) * p[0] + a * p[1]) + b * ((1 - a) * p[columns] + a * p[columns + 1]);
+  }
+
+private:
+  vtkSmartPointer<vtkImageData> Image;
+  int Extent[6];
+  double Origin[3];
+  double Spacing[3];
+  const float* Values;
+};
+
+Place Along(const Place& x, const Place& direction, double length)
+{
+  return { x[0] + length * direction[0], x[1] + length * direction[1] };
+}
+
+// How far along a direction, on either side, the picture changes most; 0: there is no change.
+double FindEdge(const SmoothPicture& picture, const Place& x, const Place& direction, double reach)
+{
+  constexpr double step = 0.25; // pixels
+  const int steps = static_cast<int>(std::floor(reach / step));
+  double best = 1e-3; // less is no change
+  int bestStep = 0;
+  for (int s = 0; s <= steps; ++s) // of equal ones the nearest
+  {
+    for (const int side : { s, -s })
+    {
+      const double slope = std::abs(picture.At(Along(x, direction, side * step + 1)) -
+        picture.At(Along(x, direction, side * step - 1)));
+      if (slope > best * (1 + 1e-9))
+      {
+        best = slope;
+        bestStep = side;
+      }
+    }
+  }
+  return bestStep * step;
 }
 }
 
@@ -330,95 +518,26 @@ bool vtkLacunaOutlineTools::Trace(vtkImageData* picture, double level, const dou
   }
   // A border on the other side of the level closes what reaches it: below for what is bright around the
   // place, above for what is dark. Of a rectangle: what is bright.
-  double origin[3];
-  double spacing[3];
-  int extent[6];
-  image->GetOrigin(origin);
-  image->GetSpacing(spacing);
-  image->GetExtent(extent);
   const bool hasPlace = std::isfinite(place[0]) && std::isfinite(place[1]);
   bool isBright = true;
   if (hasPlace)
   {
-    const int i = static_cast<int>(std::lround((place[0] - origin[0]) / spacing[0]));
-    const int j = static_cast<int>(std::lround((place[1] - origin[1]) / spacing[1]));
-    if (i < extent[0] || i > extent[1] || j < extent[2] || j > extent[3])
+    const std::optional<double> value = GetNearestLevel(image, place);
+    if (!value)
     {
       return false;
     }
-    isBright = image->GetScalarComponentAsDouble(i, j, extent[4], 0) >= level;
+    isBright = *value >= level;
   }
-  vtkNew<vtkImageData> real;
-  real->CopyStructure(image);
-  lacuna::Arrays::AddScalars(real, VTK_DOUBLE, "Intensity");
-  double range[2];
-  scalars->GetFiniteRange(range);
-  // so far that the border is crossed at half a pixel where the picture is just at the level
-  const double beyond =
-    isBright ? std::min(range[0], 2 * level - range[1]) : std::max(range[1], 2 * level - range[0]);
-  for (vtkIdType n = 0; n < scalars->GetNumberOfTuples(); ++n)
-  {
-    const double value = scalars->GetComponent(n, 0);
-    real->GetPointData()->GetScalars()->SetComponent(n, 0, std::isfinite(value) ? value : beyond);
-  }
-  vtkNew<vtkImageConstantPad> pad;
-  pad->SetInputData(real);
-  pad->SetOutputWholeExtent(
-    extent[0] - 1, extent[1] + 1, extent[2] - 1, extent[3] + 1, extent[4], extent[5]);
-  pad->SetConstant(beyond);
-  vtkNew<vtkFlyingEdges2D> edges;
-  edges->SetInputConnection(pad->GetOutputPort());
-  edges->SetValue(0, level);
-  vtkNew<vtkStripper> lines;
-  lines->SetInputConnection(edges->GetOutputPort());
-  lines->SetMaximumLength(1000000);
-  lines->JoinContiguousSegmentsOn();
-  lines->Update();
-  vtkPolyData* found = lines->GetOutput();
-  vtkCellArray* cells = found->GetLines();
-  std::vector<Place> best;
-  double bestArea = 0;
-  for (vtkIdType c = 0; c < cells->GetNumberOfCells(); ++c)
-  {
-    vtkIdType count = 0;
-    const vtkIdType* ids = nullptr;
-    cells->GetCellAtId(c, count, ids);
-    if (count < 4 || ids[0] != ids[count - 1])
-    {
-      continue;
-    }
-    std::vector<Place> line;
-    for (vtkIdType i = 0; i + 1 < count; ++i)
-    {
-      double x[3];
-      found->GetPoint(ids[i], x);
-      line.push_back({ x[0], x[1] });
-    }
-    const double area = GetArea(line);
-    const bool isBetter =
-      hasPlace ? IsInside(line, place) && (best.empty() || area < bestArea) : area > bestArea;
-    if (isBetter)
-    {
-      best = std::move(line);
-      bestArea = area;
-    }
-  }
-  if (best.empty())
+  const vtkSmartPointer<vtkPolyData> contours = FindContours(image, level, isBright);
+  std::vector<Place> line = ChooseContour(contours, hasPlace ? place : nullptr);
+  if (line.empty())
   {
     return false;
   }
-  // the padding is no part of the picture
-  const double low[2] = { origin[0] + extent[0] * spacing[0], origin[1] + extent[2] * spacing[1] };
-  const double high[2] = { origin[0] + extent[1] * spacing[0], origin[1] + extent[3] * spacing[1] };
-  for (Place& p : best)
-  {
-    for (int c = 0; c < 2; ++c)
-    {
-      p[c] = std::clamp(p[c], std::min(low[c], high[c]), std::max(low[c], high[c]));
-    }
-  }
-  best.erase(std::unique(best.begin(), best.end()), best.end());
-  SetPlaces(outline, best, origin[2] + extent[4] * spacing[2]);
+  Confine(line, image);
+  const int* extent = image->GetExtent();
+  SetPlaces(outline, line, image->GetOrigin()[2] + extent[4] * image->GetSpacing()[2]);
   return outline->GetNumberOfPoints() >= 3;
 }
 
@@ -430,52 +549,7 @@ int vtkLacunaOutlineTools::Snap(vtkImageData* picture, vtkPoints* points, double
   {
     return 0;
   }
-  vtkNew<vtkImageGaussianSmooth> smooth;
-  smooth->SetInputData(picture);
-  smooth->SetDimensionality(2);
-  smooth->SetStandardDeviations(1, 1);
-  vtkNew<vtkImageData> real;
-  real->CopyStructure(picture);
-  lacuna::Arrays::AddScalars(real, VTK_FLOAT, "Intensity");
-  for (vtkIdType n = 0; n < picture->GetNumberOfPoints(); ++n)
-  {
-    real->GetPointData()->GetScalars()->SetComponent(
-      n, 0, picture->GetPointData()->GetScalars()->GetComponent(n, 0));
-  }
-  smooth->SetInputData(real);
-  smooth->Update();
-  vtkImageData* image = smooth->GetOutput();
-  int extent[6];
-  double origin[3];
-  double spacing[3];
-  image->GetExtent(extent);
-  image->GetOrigin(origin);
-  image->GetSpacing(spacing);
-  const auto* values = static_cast<const float*>(image->GetScalarPointer());
-  const int columns = extent[1] - extent[0] + 1;
-  const int rows = extent[3] - extent[2] + 1;
-  // linear between pixels; not a number outside
-  const auto get = [&](const Place& x)
-  {
-    const double u = (x[0] - origin[0]) / spacing[0] - extent[0];
-    const double v = (x[1] - origin[1]) / spacing[1] - extent[2];
-    if (!(u >= 0 && v >= 0 && u <= columns - 1 && v <= rows - 1))
-    {
-      return vtkMath::Nan();
-    }
-    const int i = std::min(static_cast<int>(u), columns - 2);
-    const int j = std::min(static_cast<int>(v), rows - 2);
-    if (i < 0 || j < 0)
-    {
-      return vtkMath::Nan();
-    }
-    const float* p = values + static_cast<std::ptrdiff_t>(j) * columns + i;
-    const double a = u - i;
-    const double b = v - j;
-    return (1 - b) * ((1 - a) * p[0] + a * p[1]) + b * ((1 - a) * p[columns] + a * p[columns + 1]);
-  };
-  constexpr double step = 0.25; // pixels
-  const int steps = static_cast<int>(std::floor(reach / step));
+  const SmoothPicture smooth(picture);
   const std::size_t n = places.size();
   std::vector<Place> moved = places;
   int count = 0;
@@ -489,26 +563,10 @@ int vtkLacunaOutlineTools::Snap(vtkImageData* picture, vtkPoints* points, double
       continue;
     }
     const Place across{ (after[1] - before[1]) / length, (before[0] - after[0]) / length };
-    const auto at = [&](double t) {
-      return Place{ places[i][0] + t * across[0], places[i][1] + t * across[1] };
-    };
-    double best = 1e-3; // less is no change
-    int bestStep = 0;
-    for (int s = 0; s <= steps; ++s) // of equal ones the nearest
+    const double away = FindEdge(smooth, places[i], across, reach);
+    if (away != 0)
     {
-      for (const int side : { s, -s })
-      {
-        const double slope = std::abs(get(at(side * step + 1)) - get(at(side * step - 1)));
-        if (slope > best * (1 + 1e-9))
-        {
-          best = slope;
-          bestStep = side;
-        }
-      }
-    }
-    if (bestStep != 0)
-    {
-      moved[i] = at(bestStep * step);
+      moved[i] = Along(places[i], across, away);
       ++count;
     }
   }

@@ -10,6 +10,7 @@
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
 #include "vtkDataArray.h"
+#include "vtkDataSetAttributes.h"
 #include "vtkDoubleArray.h"
 #include "vtkFieldData.h"
 #include "vtkInformation.h"
@@ -21,11 +22,13 @@
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
 #include "vtkSmartPointer.h"
+#include "vtkStdString.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkStringArray.h"
 #include "vtkStripper.h"
 #include "vtkTable.h"
 #include "vtkUnsignedCharArray.h"
+#include "vtkVariant.h"
 
 #include <algorithm>
 #include <array>
@@ -357,8 +360,91 @@ std::map<std::pair<int, std::string>, Structure> GetStructures(vtkPolyData* inpu
   return structures;
 }
 
+// "Warning: In file, line n\nvtkClass (0x...): words\n\n" without what only helps programmers.
+std::string GetWords(const std::string& text)
+{
+  const std::size_t at = text.find("): ");
+  std::string words = at == std::string::npos ? text : text.substr(at + 3);
+  while (!words.empty() && (words.back() == '\n' || words.back() == ' '))
+  {
+    words.pop_back();
+  }
+  return words;
+}
+
+// The outlines as closed lines of few points.
+vtkSmartPointer<vtkPolyData> MakeLines(const Lines& outlines)
+{
+  constexpr std::size_t all = 160; // points of a structure, which the time of a fit depends on
+  const std::size_t each = std::clamp<std::size_t>(all / outlines.size(), FewestPoints, MostPoints);
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  vtkNew<vtkCellArray> cells;
+  for (const auto& outline : outlines)
+  {
+    const std::vector<Vec3> line = GetEven(outline, each);
+    cells->InsertNextCell(static_cast<int>(line.size() + 1));
+    const vtkIdType first = points->GetNumberOfPoints();
+    for (const Vec3& x : line)
+    {
+      cells->InsertCellPoint(points->InsertNextPoint(x.data()));
+    }
+    cells->InsertCellPoint(first);
+  }
+  auto lines = vtkSmartPointer<vtkPolyData>::New();
+  lines->SetPoints(points);
+  lines->SetLines(cells);
+  return lines;
+}
+
+// The surface of a structure as it is shown: with its number and colour.
+vtkSmartPointer<vtkPolyData> MakePart(
+  vtkPolyData* surface, int number, const std::array<unsigned char, 3>& rgb)
+{
+  auto part = vtkSmartPointer<vtkPolyData>::New();
+  part->ShallowCopy(surface);
+  vtkNew<vtkIntArray> of;
+  of->SetName("Structure");
+  lacuna::Arrays::SetNumberOfTuples(of, part->GetNumberOfCells());
+  of->FillValue(number);
+  vtkNew<vtkUnsignedCharArray> color;
+  color->SetName("StructureColor");
+  color->SetNumberOfComponents(3);
+  lacuna::Arrays::SetNumberOfTuples(color, part->GetNumberOfCells());
+  for (int c = 0; c < 3; ++c)
+  {
+    color->FillComponent(c, rgb[c]);
+  }
+  part->GetCellData()->SetScalars(of);
+  part->GetCellData()->AddArray(color);
+  return part;
+}
+
+template <class Array>
+void AddColumn(vtkTable* table, const char* name)
+{
+  vtkNew<Array> column;
+  column->SetName(name);
+  table->AddColumn(column);
+}
+
+// Of output 1.
+void AddColumns(vtkTable* table)
+{
+  AddColumn<vtkIntArray>(table, "Structure");
+  AddColumn<vtkStringArray>(table, "Name");
+  AddColumn<vtkIntArray>(table, "Outlines");
+  for (const char* title : { "Volume (ml)", "Standard error (ml)", "Area (cm2)",
+         "Largest diameter (mm)", "Centroid X (mm)", "Centroid Y (mm)", "Centroid Z (mm)" })
+  {
+    AddColumn<vtkDoubleArray>(table, title);
+  }
+  AddColumn<vtkStringArray>(table, "Status");
+}
+}
+
 // What is told by an algorithm within, and where its progress and stops go.
-struct Listener
+struct vtkLacunaOutlinedStructures::Listener
 {
   std::string Error;
   std::vector<std::string> Warnings;
@@ -390,19 +476,6 @@ struct Listener
     }
   }
 };
-
-// "Warning: In file, line n\nvtkClass (0x...): words\n\n" without what only helps programmers.
-std::string GetWords(const std::string& text)
-{
-  const std::size_t at = text.find("): ");
-  std::string words = at == std::string::npos ? text : text.substr(at + 3);
-  while (!words.empty() && (words.back() == '\n' || words.back() == ' '))
-  {
-    words.pop_back();
-  }
-  return words;
-}
-}
 
 struct vtkLacunaOutlinedStructures::Kept
 {
@@ -455,54 +528,9 @@ std::shared_ptr<const vtkLacunaOutlinedStructures::Kept> vtkLacunaOutlinedStruct
   {
     return result;
   }
-  vtkNew<vtkPolyData> lines;
-  vtkNew<vtkPoints> points;
-  points->SetDataTypeToDouble();
-  vtkNew<vtkCellArray> cells;
-  double low[3];
-  double high[3];
-  std::copy_n(outlines[0][0].data(), 3, low);
-  std::copy_n(outlines[0][0].data(), 3, high);
-  constexpr std::size_t all = 160; // points of a structure, which the time of a fit depends on
-  const std::size_t each = std::clamp<std::size_t>(all / outlines.size(), FewestPoints, MostPoints);
-  for (const auto& outline : outlines)
-  {
-    const std::vector<Vec3> line = GetEven(outline, each);
-    cells->InsertNextCell(static_cast<int>(line.size() + 1));
-    const vtkIdType first = points->GetNumberOfPoints();
-    for (const Vec3& x : line)
-    {
-      cells->InsertCellPoint(points->InsertNextPoint(x.data()));
-      for (int c = 0; c < 3; ++c)
-      {
-        low[c] = std::min(low[c], x[c]);
-        high[c] = std::max(high[c], x[c]);
-      }
-    }
-    cells->InsertCellPoint(first);
-  }
-  lines->SetPoints(points);
-  lines->SetLines(cells);
-  constexpr double edge = 1.0 / 40; // of the extent
-  const double extent = std::max({ high[0] - low[0], high[1] - low[1], high[2] - low[2] });
-
-  vtkNew<vtkLacunaRBFSurface> filter;
-  // without ParaView's executive it is alone on this rank
-  filter->SetExecutive(vtkNew<vtkStreamingDemandDrivenPipeline>());
-  filter->SetInputDataObject(lines);
-  filter->SetSmoothing(this->Smoothing);
-  filter->SetOutputSpacing(this->OutputSpacing > 0 ? this->OutputSpacing : edge * extent);
   Listener listener;
   listener.Execution = &execution;
-  vtkNew<vtkCallbackCommand> callback;
-  callback->SetCallback(&Listener::Hear);
-  callback->SetClientData(&listener);
-  for (const auto event :
-    { vtkCommand::ErrorEvent, vtkCommand::WarningEvent, vtkCommand::ProgressEvent })
-  {
-    filter->AddObserver(event, callback);
-  }
-  filter->Update();
+  const vtkSmartPointer<vtkPolyData> surface = this->MakeSurface(MakeLines(outlines), listener);
   if (listener.IsStopped)
   {
     throw lacuna::Aborted();
@@ -523,7 +551,6 @@ std::shared_ptr<const vtkLacunaOutlinedStructures::Kept> vtkLacunaOutlinedStruct
       result->Warnings.push_back(GetWords(warning));
     }
   }
-  vtkPolyData* surface = filter->GetOutput();
   vtkDataArray* volume = surface->GetFieldData()->GetArray("SurfaceVolume");
   if (!listener.Error.empty() || surface->GetNumberOfCells() == 0 || !volume)
   {
@@ -545,10 +572,35 @@ std::shared_ptr<const vtkLacunaOutlinedStructures::Kept> vtkLacunaOutlinedStruct
 }
 
 //------------------------------------------------------------------------------
-void vtkLacunaOutlinedStructures::Make(
-  const lacuna::Ports& ports, lacuna::AlgorithmExecution& execution)
+vtkSmartPointer<vtkPolyData> vtkLacunaOutlinedStructures::MakeSurface(
+  vtkPolyData* lines, Listener& listener) const
 {
-  auto* input = ports.GetInput<vtkPolyData>();
+  constexpr double edge = 1.0 / 40; // of the extent
+  double bounds[6];
+  lines->GetPoints()->GetBounds(bounds);
+  const double extent =
+    std::max({ bounds[1] - bounds[0], bounds[3] - bounds[2], bounds[5] - bounds[4] });
+  vtkNew<vtkLacunaRBFSurface> filter;
+  // without ParaView's executive it is alone on this rank
+  filter->SetExecutive(vtkNew<vtkStreamingDemandDrivenPipeline>());
+  filter->SetInputDataObject(lines);
+  filter->SetSmoothing(this->Smoothing);
+  filter->SetOutputSpacing(this->OutputSpacing > 0 ? this->OutputSpacing : edge * extent);
+  vtkNew<vtkCallbackCommand> callback;
+  callback->SetCallback(&Listener::Hear);
+  callback->SetClientData(&listener);
+  for (const auto event :
+    { vtkCommand::ErrorEvent, vtkCommand::WarningEvent, vtkCommand::ProgressEvent })
+  {
+    filter->AddObserver(event, callback);
+  }
+  filter->Update();
+  return filter->GetOutput();
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaOutlinedStructures::CheckProperties() const
+{
   for (const auto& property :
     { std::pair<const char*, double>{ "RegistrationError", this->RegistrationError },
       { "Smoothing", this->Smoothing }, { "OutputSpacing", this->OutputSpacing } })
@@ -559,6 +611,14 @@ void vtkLacunaOutlinedStructures::Make(
         lacuna::FormatNumber(property.second) + "; it must be a finite number >= 0, in mm");
     }
   }
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaOutlinedStructures::Make(
+  const lacuna::Ports& ports, lacuna::AlgorithmExecution& execution)
+{
+  auto* input = ports.GetInput<vtkPolyData>();
+  this->CheckProperties();
   vtkNew<vtkStripper> joined; // pieces of lines, as cutters leave them
   if (!input->GetCellData()->HasArray("Structure"))
   {
@@ -572,62 +632,35 @@ void vtkLacunaOutlinedStructures::Make(
 
   std::vector<std::shared_ptr<const Kept>> made;
   vtkNew<vtkAppendPolyData> append;
-  vtkNew<vtkIntArray> numbers;
-  numbers->SetName("Structure");
-  vtkNew<vtkStringArray> names;
-  names->SetName("Name");
-  vtkNew<vtkIntArray> counts;
-  counts->SetName("Outlines");
-  vtkNew<vtkStringArray> states;
-  states->SetName("Status");
-  constexpr int columns = 7;
-  const std::array<const char*, columns> titles{ "Volume (ml)", "Standard error (ml)", "Area (cm2)",
-    "Largest diameter (mm)", "Centroid X (mm)", "Centroid Y (mm)", "Centroid Z (mm)" };
-  std::array<vtkNew<vtkDoubleArray>, columns> values;
-  std::size_t n = 0;
+  vtkNew<vtkTable> rows;
+  AddColumns(rows);
   for (const auto& [key, structure] : structures)
   {
     const int number = key.first;
+    const std::size_t n = made.size();
     execution.SetStage(static_cast<double>(n) / static_cast<double>(structures.size()),
       static_cast<double>(n + 1) / static_cast<double>(structures.size()));
-    ++n;
     std::shared_ptr<const Kept> result = this->Make(structure, execution);
     made.push_back(result);
     for (const std::string& warning : result->Warnings)
     {
       vtkWarningMacro(<< lacuna::ToPrintable(structure.Name + ": " + warning));
     }
-    numbers->InsertNextValue(number);
-    names->InsertNextValue(structure.Name);
-    counts->InsertNextValue(static_cast<int>(structure.Outlines.size()));
-    states->InsertNextValue(result->Lack);
     const Measures& size = result->Size;
-    const double row[columns] = { size.Volume / 1000,
-      std::hypot(size.OutlineError, this->RegistrationError * size.RegistrationError) / 1000,
-      size.Area / 100, size.Diameter, size.Centroid[0], size.Centroid[1], size.Centroid[2] };
-    for (int c = 0; c < columns; ++c)
+    const double error =
+      std::hypot(size.OutlineError, this->RegistrationError * size.RegistrationError);
+    const std::array<vtkVariant, 11> row{ number, vtkStdString(structure.Name),
+      static_cast<int>(structure.Outlines.size()), size.Volume / 1000, error / 1000,
+      size.Area / 100, size.Diameter, size.Centroid[0], size.Centroid[1], size.Centroid[2],
+      vtkStdString(result->Lack) };
+    const vtkIdType at = rows->InsertNextBlankRow();
+    for (std::size_t column = 0; column < row.size(); ++column)
     {
-      values[c]->InsertNextValue(row[c]);
+      rows->SetValue(at, static_cast<vtkIdType>(column), row[column]);
     }
     if (result->Surface)
     {
-      vtkNew<vtkPolyData> part;
-      part->ShallowCopy(result->Surface);
-      vtkNew<vtkIntArray> of;
-      of->SetName("Structure");
-      lacuna::Arrays::SetNumberOfTuples(of, part->GetNumberOfCells());
-      of->FillValue(number);
-      vtkNew<vtkUnsignedCharArray> color;
-      color->SetName("StructureColor");
-      color->SetNumberOfComponents(3);
-      lacuna::Arrays::SetNumberOfTuples(color, part->GetNumberOfCells());
-      for (int c = 0; c < 3; ++c)
-      {
-        color->FillComponent(c, structure.Color[c]);
-      }
-      part->GetCellData()->SetScalars(of);
-      part->GetCellData()->AddArray(color);
-      append->AddInputData(part);
+      append->AddInputData(MakePart(result->Surface, number, structure.Color));
     }
   }
   this->Made = std::move(made);
@@ -640,15 +673,7 @@ void vtkLacunaOutlinedStructures::Make(
   }
   auto* table = ports.GetOutput<vtkTable>(1);
   table->GetFieldData()->Initialize();
-  table->AddColumn(numbers);
-  table->AddColumn(names);
-  table->AddColumn(counts);
-  for (int c = 0; c < columns; ++c)
-  {
-    values[c]->SetName(titles[c]);
-    table->AddColumn(values[c]);
-  }
-  table->AddColumn(states);
+  table->SetRowData(rows->GetRowData());
 }
 
 //------------------------------------------------------------------------------

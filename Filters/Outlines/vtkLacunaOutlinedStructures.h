@@ -36,6 +36,7 @@
 #include "vtkLacunaAlgorithm.h"
 #include "vtkLacunaFiltersOutlinesModule.h" // for export macro
 #include "vtkPolyDataAlgorithm.h"
+#include "vtkSmartPointer.h" // for surfaces
 
 #include <memory> // for what is kept
 #include <vector> // for what is kept
@@ -87,9 +88,13 @@ private:
   void operator=(const vtkLacunaOutlinedStructures&) = delete;
 
   struct Kept;
+  struct Listener;
+  void CheckProperties() const;
   /// What an earlier execution made of the same outlines, or made now.
   std::shared_ptr<const Kept> Make(
     const Input& structure, lacuna::AlgorithmExecution& execution) const;
+  /// Empty, or of no use, when the listener hears of an error.
+  vtkSmartPointer<vtkPolyData> MakeSurface(vtkPolyData* lines, Listener& listener) const;
 
   std::vector<std::shared_ptr<const Kept>> Made; ///< of the last execution
   double RegistrationError = 0;

@@ -49,8 +49,85 @@ using SDDP = vtkStreamingDemandDrivenPipeline;
 constexpr std::array<std::array<unsigned char, 3>, 7> Palette{ { { 230, 159, 0 }, { 86, 180, 233 },
   { 0, 158, 115 }, { 240, 228, 66 }, { 213, 94, 0 }, { 204, 121, 167 }, { 0, 114, 178 } } };
 
+void CheckNumbers(double structure, double outline, double slice)
+{
+  constexpr double most = 1 << 30;
+  const auto isWhole = [](double value, double least)
+  { return value >= least && value <= most && value == std::floor(value); };
+  if (!isWhole(structure, 1) || !isWhole(outline, 0) || !isWhole(slice, -most))
+  {
+    throw std::runtime_error("OutlinePoints: a point has the structure " +
+      lacuna::FormatNumber(structure) + ", the outline " + lacuna::FormatNumber(outline) +
+      " and the slice " + lacuna::FormatNumber(slice) +
+      "; they must be whole numbers, from 1 and from 0 on");
+  }
+}
+
+// The outlines as closed lines with their arrays.
+struct OutlineLines
+{
+  OutlineLines()
+  {
+    this->Points->SetDataTypeToDouble();
+    this->Pixel->SetName("Pixel");
+    this->Pixel->SetNumberOfComponents(3);
+    this->IsHandle->SetName("Handle");
+    this->Structures->SetName("Structure");
+    this->Names->SetName("StructureName");
+    this->Numbers->SetName("Outline");
+    this->Slices->SetName("SliceNumber");
+    this->Colors->SetName("StructureColor");
+    this->Colors->SetNumberOfComponents(3);
+  }
+
+  // A curve in pixels of a slice; every so many steps a point of it is one that was given.
+  void AddLine(vtkPoints* curve, int steps, int slice, const lacuna::Matrix4& pixelToSpace)
+  {
+    const vtkIdType begin = this->Points->GetNumberOfPoints();
+    this->Lines->InsertNextCell(static_cast<int>(curve->GetNumberOfPoints() + 1));
+    for (vtkIdType i = 0; i < curve->GetNumberOfPoints(); ++i)
+    {
+      double x[3];
+      curve->GetPoint(i, x);
+      const float at[3] = { static_cast<float>(x[0]), static_cast<float>(x[1]),
+        static_cast<float>(slice) };
+      this->Pixel->InsertNextTypedTuple(at);
+      this->IsHandle->InsertNextValue(i % steps == 0 ? 1 : 0);
+      this->Lines->InsertCellPoint(
+        this->Points->InsertNextPoint(pixelToSpace.Point({ x[0], x[1], 0 }).data()));
+    }
+    this->Lines->InsertCellPoint(begin);
+    this->Slices->InsertNextValue(slice);
+  }
+
+  void Set(vtkPolyData* output)
+  {
+    output->SetPoints(this->Points);
+    output->SetLines(this->Lines);
+    output->GetPointData()->AddArray(this->Pixel);
+    output->GetPointData()->AddArray(this->IsHandle);
+    output->GetCellData()->SetScalars(this->Structures);
+    output->GetCellData()->AddArray(this->Names);
+    output->GetCellData()->AddArray(this->Numbers);
+    output->GetCellData()->AddArray(this->Slices);
+    output->GetCellData()->AddArray(this->Colors);
+  }
+
+  vtkNew<vtkPoints> Points;
+  vtkNew<vtkCellArray> Lines;
+  vtkNew<vtkFloatArray> Pixel;
+  vtkNew<vtkUnsignedCharArray> IsHandle;
+  vtkNew<vtkIntArray> Structures;
+  vtkNew<vtkStringArray> Names;
+  vtkNew<vtkIntArray> Numbers;
+  vtkNew<vtkIntArray> Slices;
+  vtkNew<vtkUnsignedCharArray> Colors;
+};
+}
+
+//------------------------------------------------------------------------------
 // Where the slices of an image lie.
-class Slices
+class vtkLacunaSliceOutliner::Slices
 {
 public:
   explicit Slices(vtkImageData* image)
@@ -82,8 +159,18 @@ public:
     }
   }
 
+  // The slice of this number where it lies in space.
+  void SetPicture(lacuna::AlgorithmExecution& execution, vtkDataArray* scalars, int number,
+    vtkStructuredGrid* picture) const;
+
   int GetFirst() const { return this->Numbers.front(); }
   int GetLast() const { return this->Numbers.back(); }
+
+  std::string DescribeRange() const
+  {
+    return "the slices are " + std::to_string(this->GetFirst()) + " to " +
+      std::to_string(this->GetLast());
+  }
 
   // Extent index of the slice that has this number.
   std::optional<int> FindIndex(int number) const
@@ -149,20 +236,20 @@ private:
   std::vector<int> Numbers; // of the slices, from the extent's first on
 };
 
-// A slice where it lies in space.
-void SetPicture(lacuna::AlgorithmExecution& execution, vtkImageData* input, vtkDataArray* scalars,
-  const Slices& slices, int number, vtkStructuredGrid* picture)
+//------------------------------------------------------------------------------
+void vtkLacunaSliceOutliner::Slices::SetPicture(lacuna::AlgorithmExecution& execution,
+  vtkDataArray* scalars, int number, vtkStructuredGrid* picture) const
 {
   lacuna::FieldData::Set(picture, "SliceNumber", { static_cast<double>(number) }, 1);
-  if (!slices.HasPlace(number))
+  if (!this->HasPlace(number))
   {
     return;
   }
-  const int k = slices.FindIndex(number).value();
-  const int* extent = input->GetExtent();
+  const int k = this->FindIndex(number).value();
+  const int* extent = this->Image->GetExtent();
   const int columns = extent[1] - extent[0] + 1;
   const int rows = extent[3] - extent[2] + 1;
-  const lacuna::Matrix4 toSpace = slices.GetPixelToSpace(number);
+  const lacuna::Matrix4 toSpace = this->GetPixelToSpace(number);
   picture->SetExtent(extent[0], extent[1], extent[2], extent[3], 0, 0);
   vtkNew<vtkPoints> places;
   places->SetDataTypeToDouble();
@@ -180,8 +267,7 @@ void SetPicture(lacuna::AlgorithmExecution& execution, vtkImageData* input, vtkD
       {
         for (int i = 0; i < columns; ++i)
         {
-          const auto [column, row] =
-            slices.GetPixel(extent[0] + i, extent[2] + static_cast<int>(j));
+          const auto [column, row] = this->GetPixel(extent[0] + i, extent[2] + static_cast<int>(j));
           const lacuna::Vec3 x = toSpace.Point({ column, row, 0 });
           places->SetPoint(j * columns + i, x.data());
         }
@@ -189,26 +275,11 @@ void SetPicture(lacuna::AlgorithmExecution& execution, vtkImageData* input, vtkD
     });
   picture->SetPoints(places);
   picture->GetPointData()->SetScalars(levels);
-  const std::array<double, 4> grid = slices.GetPixelGrid();
+  const std::array<double, 4> grid = this->GetPixelGrid();
   lacuna::FieldData::Set(picture, "PixelOrigin", { grid[0], grid[1] }, 2);
   lacuna::FieldData::Set(picture, "PixelStep", { grid[2], grid[3] }, 2);
   lacuna::FieldData::Set(picture, "PixelSize",
     { grid[2] * lacuna::Norm(toSpace.Column(0)), grid[3] * lacuna::Norm(toSpace.Column(1)) }, 2);
-}
-
-void CheckNumbers(double structure, double outline, double slice)
-{
-  constexpr double most = 1 << 30;
-  const auto isWhole = [](double value, double least)
-  { return value >= least && value <= most && value == std::floor(value); };
-  if (!isWhole(structure, 1) || !isWhole(outline, 0) || !isWhole(slice, -most))
-  {
-    throw std::runtime_error("OutlinePoints: a point has the structure " +
-      lacuna::FormatNumber(structure) + ", the outline " + lacuna::FormatNumber(outline) +
-      " and the slice " + lacuna::FormatNumber(slice) +
-      "; they must be whole numbers, from 1 and from 0 on");
-  }
-}
 }
 
 //------------------------------------------------------------------------------
@@ -392,100 +463,59 @@ void vtkLacunaSliceOutliner::Make(const lacuna::Ports& ports, lacuna::AlgorithmE
                              "choose an array with one value per pixel");
   }
   const Slices slices(input);
-  const std::string range = "the slices are " + std::to_string(slices.GetFirst()) + " to " +
-    std::to_string(slices.GetLast());
-
   if (slices.IsVolume())
   {
     this->CheckGrid(input);
   }
   if (this->Slice < slices.GetFirst() || this->Slice > slices.GetLast())
   {
-    throw std::runtime_error("Slice " + std::to_string(this->Slice) + " is not there; " + range);
+    throw std::runtime_error(
+      "Slice " + std::to_string(this->Slice) + " is not there; " + slices.DescribeRange());
   }
   const int shown = slices.FindNearest(this->Slice);
   this->ShownSlice = shown;
-  SetPicture(execution, input, scalars, slices, shown, picture);
+  slices.SetPicture(execution, scalars, shown, picture);
   if (!slices.HasPlace(shown))
   {
     vtkWarningMacro(<< "slice " << shown
                     << " has no usable pose, so it has no place in mm and no picture");
   }
+  this->MakeOutlines(slices, output);
+}
 
-  // the outlines
-  vtkNew<vtkPoints> points;
-  points->SetDataTypeToDouble();
-  vtkNew<vtkCellArray> lines;
-  vtkNew<vtkFloatArray> pixel;
-  pixel->SetName("Pixel");
-  pixel->SetNumberOfComponents(3);
-  vtkNew<vtkUnsignedCharArray> isHandle;
-  isHandle->SetName("Handle");
-  vtkNew<vtkIntArray> structures;
-  structures->SetName("Structure");
-  vtkNew<vtkStringArray> names;
-  names->SetName("StructureName");
-  vtkNew<vtkIntArray> numbers;
-  numbers->SetName("Outline");
-  vtkNew<vtkIntArray> sliceNumbers;
-  sliceNumbers->SetName("SliceNumber");
-  vtkNew<vtkUnsignedCharArray> colors;
-  colors->SetName("StructureColor");
-  colors->SetNumberOfComponents(3);
-  std::set<std::pair<int, int>> done;
-  std::ostringstream leftOut;
+//------------------------------------------------------------------------------
+void vtkLacunaSliceOutliner::MakeOutlines(const Slices& slices, vtkPolyData* output)
+{
   for (const Point& p : this->Points)
   {
     CheckNumbers(p.Structure, p.Outline, p.Slice);
   }
-  for (std::size_t first = 0, next = 0; first < this->Points.size(); first = next)
+  OutlineLines lines;
+  std::set<std::pair<int, int>> done;
+  std::string leftOut;
+  for (std::size_t next = 0; next < this->Points.size();)
   {
-    const Point& given = this->Points[first];
-    const struct
-    {
-      int Structure, Outline, Slice;
-    } one{ static_cast<int>(given.Structure), static_cast<int>(given.Outline),
-      static_cast<int>(given.Slice) };
-    const std::string what = "outline " + std::to_string(one.Outline) + " of " +
-      this->GetName(one.Structure) + " in slice " + std::to_string(one.Slice);
-    if (!done.insert({ one.Structure, one.Outline }).second)
+    const int structure = static_cast<int>(this->Points[next].Structure);
+    const int outline = static_cast<int>(this->Points[next].Outline);
+    const int slice = static_cast<int>(this->Points[next].Slice);
+    const std::string what = "outline " + std::to_string(outline) + " of " +
+      this->GetName(structure) + " in slice " + std::to_string(slice);
+    if (!done.insert({ structure, outline }).second)
     {
       throw std::runtime_error(
         what + " has points in two places of OutlinePoints; put them together");
     }
-    vtkNew<vtkPoints> handles;
-    handles->SetDataTypeToDouble();
-    for (; next < this->Points.size() && this->Points[next].Structure == one.Structure &&
-         this->Points[next].Outline == one.Outline;
-         ++next)
+    const vtkSmartPointer<vtkPoints> handles = this->TakeHandles(next, what);
+    if (!slices.FindIndex(slice))
     {
-      const Point& p = this->Points[next];
-      if (p.Slice != one.Slice)
-      {
-        throw std::runtime_error(what + " has a point in slice " + lacuna::FormatNumber(p.Slice) +
-          "; an outline lies in one slice");
-      }
-      if (!std::isfinite(p.Column) || !std::isfinite(p.Row))
-      {
-        throw std::runtime_error(what + " has a point that is not finite; remove it");
-      }
-      handles->InsertNextPoint(p.Column, p.Row, 0);
+      throw std::runtime_error(
+        what + " is in a slice that is not there; " + slices.DescribeRange());
     }
-    if (handles->GetNumberOfPoints() < 3)
+    if (!slices.HasPlace(slice))
     {
-      throw std::runtime_error(what + " has " + std::to_string(handles->GetNumberOfPoints()) +
-        (handles->GetNumberOfPoints() == 1 ? " point" : " points") + "; it needs at least 3");
-    }
-    if (!slices.FindIndex(one.Slice))
-    {
-      throw std::runtime_error(what + " is in a slice that is not there; " + range);
-    }
-    if (!slices.HasPlace(one.Slice))
-    {
-      leftOut << (leftOut.str().empty() ? "" : "; ") << what;
+      leftOut += (leftOut.empty() ? "" : "; ") + what;
       continue;
     }
-    const lacuna::Matrix4 place = slices.GetPixelToSpace(one.Slice);
     vtkNew<vtkPoints> curve;
     const int steps = vtkLacunaOutlineTools::MakeCurve(handles, this->Smooth, curve);
     double crossing[3];
@@ -494,42 +524,50 @@ void vtkLacunaSliceOutliner::Make(const lacuna::Ports& ports, lacuna::AlgorithmE
       vtkWarningMacro(<< what << " crosses itself at column " << crossing[0] << ", row "
                       << crossing[1] << ": the surface will be wrong there. Move its points");
     }
-    const vtkIdType begin = points->GetNumberOfPoints();
-    lines->InsertNextCell(static_cast<int>(curve->GetNumberOfPoints() + 1));
-    for (vtkIdType i = 0; i < curve->GetNumberOfPoints(); ++i)
-    {
-      double x[3];
-      curve->GetPoint(i, x);
-      const float at[3] = { static_cast<float>(x[0]), static_cast<float>(x[1]),
-        static_cast<float>(one.Slice) };
-      pixel->InsertNextTypedTuple(at);
-      isHandle->InsertNextValue(i % steps == 0 ? 1 : 0);
-      lines->InsertCellPoint(points->InsertNextPoint(place.Point({ x[0], x[1], 0 }).data()));
-    }
-    lines->InsertCellPoint(begin);
-    structures->InsertNextValue(one.Structure);
-    names->InsertNextValue(this->GetName(one.Structure));
-    numbers->InsertNextValue(one.Outline);
-    sliceNumbers->InsertNextValue(one.Slice);
-    colors->InsertNextTypedTuple(this->GetColor(one.Structure).data());
+    lines.AddLine(curve, steps, slice, slices.GetPixelToSpace(slice));
+    lines.Structures->InsertNextValue(structure);
+    lines.Names->InsertNextValue(this->GetName(structure));
+    lines.Numbers->InsertNextValue(outline);
+    lines.Colors->InsertNextTypedTuple(this->GetColor(structure).data());
   }
-  if (!leftOut.str().empty())
+  if (!leftOut.empty())
   {
-    vtkWarningMacro(<< "left out, since their slices have no usable pose: " << leftOut.str());
+    vtkWarningMacro(<< "left out, since their slices have no usable pose: " << leftOut);
   }
-  output->SetPoints(points);
-  output->SetLines(lines);
-  output->GetPointData()->AddArray(pixel);
-  output->GetPointData()->AddArray(isHandle);
-  output->GetCellData()->SetScalars(structures);
-  for (vtkAbstractArray* array :
-    { static_cast<vtkAbstractArray*>(names.Get()), static_cast<vtkAbstractArray*>(numbers.Get()),
-      static_cast<vtkAbstractArray*>(sliceNumbers.Get()),
-      static_cast<vtkAbstractArray*>(colors.Get()) })
-  {
-    output->GetCellData()->AddArray(array);
-  }
+  lines.Set(output);
   this->NumberOfOutlines = static_cast<int>(done.size());
+}
+
+//------------------------------------------------------------------------------
+vtkSmartPointer<vtkPoints> vtkLacunaSliceOutliner::TakeHandles(
+  std::size_t& next, const std::string& what) const
+{
+  const Point first = this->Points[next];
+  auto handles = vtkSmartPointer<vtkPoints>::New();
+  handles->SetDataTypeToDouble();
+  for (; next < this->Points.size() && this->Points[next].Structure == first.Structure &&
+       this->Points[next].Outline == first.Outline;
+       ++next)
+  {
+    const Point& p = this->Points[next];
+    if (p.Slice != first.Slice)
+    {
+      throw std::runtime_error(what + " has a point in slice " + lacuna::FormatNumber(p.Slice) +
+        "; an outline lies in one slice");
+    }
+    if (!std::isfinite(p.Column) || !std::isfinite(p.Row))
+    {
+      throw std::runtime_error(what + " has a point that is not finite; remove it");
+    }
+    handles->InsertNextPoint(p.Column, p.Row, 0);
+  }
+  const vtkIdType count = handles->GetNumberOfPoints();
+  if (count < 3)
+  {
+    throw std::runtime_error(what + " has " + std::to_string(count) +
+      (count == 1 ? " point" : " points") + "; it needs at least 3");
+  }
+  return handles;
 }
 
 //------------------------------------------------------------------------------

@@ -36,12 +36,14 @@
 #include "vtkLacunaAlgorithm.h"
 #include "vtkLacunaFiltersOutlinesModule.h" // for export macro
 #include "vtkPolyDataAlgorithm.h"
+#include "vtkSmartPointer.h" // for points
 
 #include <array>  // for colours
 #include <string> // for names
 #include <vector> // for points
 
 class vtkImageData;
+class vtkPoints;
 class vtkStructuredGrid;
 
 class VTKLACUNAFILTERSOUTLINES_EXPORT vtkLacunaSliceOutliner
@@ -121,7 +123,11 @@ private:
   {
     double Structure, Outline, Slice, Column, Row;
   };
+  class Slices; // of the input
   void CheckGrid(vtkImageData* volume) const;
+  void MakeOutlines(const Slices& slices, vtkPolyData* output);
+  // The points of the outline that begins at next, which is then behind them; what names it in errors.
+  vtkSmartPointer<vtkPoints> TakeHandles(std::size_t& next, const std::string& what) const;
   std::vector<Point> Points;
   std::vector<std::string> Names;
   std::vector<std::array<double, 3>> Colors;

@@ -114,7 +114,23 @@ QWidget* pqLacunaOutlinePanel::BuildTools()
   auto* box = new QWidget(this);
   auto* layout = new QVBoxLayout(box);
   layout->setContentsMargins(0, 0, 0, 0);
+  layout->addLayout(this->BuildStructures(box));
+  auto* tools = new QButtonGroup(box);
+  layout->addLayout(this->BuildToolButtons(box, tools));
+  this->BuildLevel(box);
+  layout->addWidget(this->LevelRow);
+  QObject::connect(tools, QOverload<int>::of(&QButtonGroup::idClicked), this,
+    [this](int id)
+    {
+      this->Canvas->SetTool(static_cast<pqLacunaOutlineCanvas::Tools>(id));
+      this->LevelRow->setVisible(id == pqLacunaOutlineCanvas::Trace);
+    });
+  return box;
+}
 
+//------------------------------------------------------------------------------
+QLayout* pqLacunaOutlinePanel::BuildStructures(QWidget* box)
+{
   auto* row = MakeRow();
   this->Structures = new QComboBox(box);
   this->Structures->setObjectName("Structures");
@@ -127,7 +143,6 @@ QWidget* pqLacunaOutlinePanel::BuildTools()
   row->addWidget(rename);
   auto* add = MakeButton(tr("New"), "NewStructure", tr("Outline another structure"));
   row->addWidget(add);
-  layout->addLayout(row);
   QObject::connect(this->Structures, QOverload<int>::of(&QComboBox::currentIndexChanged), this,
     [this]
     {
@@ -139,9 +154,13 @@ QWidget* pqLacunaOutlinePanel::BuildTools()
     this->ColorButton, &QToolButton::clicked, this, &pqLacunaOutlinePanel::ChooseColor);
   QObject::connect(rename, &QToolButton::clicked, this, &pqLacunaOutlinePanel::Rename);
   QObject::connect(add, &QToolButton::clicked, this, &pqLacunaOutlinePanel::AddStructure);
+  return row;
+}
 
-  row = MakeRow();
-  auto* tools = new QButtonGroup(box);
+//------------------------------------------------------------------------------
+QLayout* pqLacunaOutlinePanel::BuildToolButtons(QWidget* box, QButtonGroup* tools)
+{
+  auto* row = MakeRow();
   const auto addTool = [&](const QString& text, const char* name, const QString& tip, int id)
   {
     auto* button = MakeButton(text, name, tip);
@@ -165,8 +184,12 @@ QWidget* pqLacunaOutlinePanel::BuildTools()
   this->Snap->setToolTip(tr("Points go to the strongest edge within 6 pixels"));
   row->addWidget(this->Snap);
   row->addStretch(1);
-  layout->addLayout(row);
+  return row;
+}
 
+//------------------------------------------------------------------------------
+void pqLacunaOutlinePanel::BuildLevel(QWidget* box)
+{
   this->LevelRow = new QWidget(box);
   auto* level = MakeRow();
   this->LevelRow->setLayout(level);
@@ -181,14 +204,6 @@ QWidget* pqLacunaOutlinePanel::BuildTools()
   level->addWidget(this->LevelNumber);
   QObject::connect(this->Level, &QSlider::valueChanged, this, [this] { this->RetraceLast(); });
   this->LevelRow->hide();
-  layout->addWidget(this->LevelRow);
-  QObject::connect(tools, QOverload<int>::of(&QButtonGroup::idClicked), this,
-    [this](int id)
-    {
-      this->Canvas->SetTool(static_cast<pqLacunaOutlineCanvas::Tools>(id));
-      this->LevelRow->setVisible(id == pqLacunaOutlineCanvas::Trace);
-    });
-  return box;
 }
 
 //------------------------------------------------------------------------------
@@ -197,7 +212,18 @@ QWidget* pqLacunaOutlinePanel::BuildResults()
   auto* box = new QWidget(this);
   auto* layout = new QVBoxLayout(box);
   layout->setContentsMargins(0, 0, 0, 0);
+  layout->addLayout(this->BuildSlices(box));
+  layout->addLayout(this->BuildEditing());
+  this->BuildTable(box);
+  layout->addWidget(this->Summary);
+  layout->addWidget(this->Table);
+  layout->addLayout(this->BuildFiles(box));
+  return box;
+}
 
+//------------------------------------------------------------------------------
+QLayout* pqLacunaOutlinePanel::BuildSlices(QWidget* box)
+{
   auto* row = MakeRow();
   this->SliceSlider = new QSlider(Qt::Horizontal, box);
   this->SliceSlider->setObjectName("SliceSlider");
@@ -208,7 +234,6 @@ QWidget* pqLacunaOutlinePanel::BuildResults()
   row->addWidget(new QLabel(tr("Slice"), box));
   row->addWidget(this->SliceSlider, 1);
   row->addWidget(this->SliceNumber);
-  layout->addLayout(row);
   QObject::connect(
     this->SliceSlider, &QSlider::valueChanged, this->SliceNumber, &QSpinBox::setValue);
   QObject::connect(this->SliceNumber, QOverload<int>::of(&QSpinBox::valueChanged), this,
@@ -226,8 +251,13 @@ QWidget* pqLacunaOutlinePanel::BuildResults()
       this->SliceSlider->setValue(slice);
       this->SliceTimer.start(0); // of many steps at once the last
     });
+  return row;
+}
 
-  row = MakeRow();
+//------------------------------------------------------------------------------
+QLayout* pqLacunaOutlinePanel::BuildEditing()
+{
+  auto* row = MakeRow();
   auto* copy = MakeButton(tr("Copy last outline"), "CopyOutline",
     tr("The outline of this structure in the nearest slice, into this slice"));
   auto* remove =
@@ -239,21 +269,24 @@ QWidget* pqLacunaOutlinePanel::BuildResults()
     row->addWidget(button);
   }
   row->addStretch(1);
-  layout->addLayout(row);
   QObject::connect(copy, &QToolButton::clicked, this, &pqLacunaOutlinePanel::CopyOutline);
   QObject::connect(remove, &QToolButton::clicked, this, &pqLacunaOutlinePanel::DeleteOutline);
   QObject::connect(this->UndoButton, &QToolButton::clicked, this, &pqLacunaOutlinePanel::Undo);
   QObject::connect(this->RedoButton, &QToolButton::clicked, this, &pqLacunaOutlinePanel::Redo);
   QObject::connect(this->Canvas, &pqLacunaOutlineCanvas::undoWanted, this,
     [this](bool isRedo) { isRedo ? this->Redo() : this->Undo(); });
+  return row;
+}
 
+//------------------------------------------------------------------------------
+void pqLacunaOutlinePanel::BuildTable(QWidget* box)
+{
   this->Summary = new QLabel(box);
   this->Summary->setObjectName("VolumeSummary");
   QFont font = this->Summary->font();
   font.setPointSizeF(1.5 * font.pointSizeF());
   font.setBold(true);
   this->Summary->setFont(font);
-  layout->addWidget(this->Summary);
 
   this->Table = new QTableWidget(0, 5, box);
   this->Table->setObjectName("StructureTable");
@@ -263,9 +296,12 @@ QWidget* pqLacunaOutlinePanel::BuildResults()
   this->Table->verticalHeader()->hide();
   this->Table->setEditTriggers(QAbstractItemView::NoEditTriggers);
   this->Table->setMaximumHeight(120);
-  layout->addWidget(this->Table);
+}
 
-  row = MakeRow();
+//------------------------------------------------------------------------------
+QLayout* pqLacunaOutlinePanel::BuildFiles(QWidget* box)
+{
+  auto* row = MakeRow();
   this->RegistrationError = new QDoubleSpinBox(box);
   this->RegistrationError->setObjectName("RegistrationError");
   this->RegistrationError->setRange(0, 20);
@@ -282,7 +318,6 @@ QWidget* pqLacunaOutlinePanel::BuildResults()
   row->addStretch(1);
   row->addWidget(load);
   row->addWidget(save);
-  layout->addLayout(row);
   QObject::connect(this->RegistrationError, QOverload<double>::of(&QDoubleSpinBox::valueChanged),
     this,
     [this](double error)
@@ -298,7 +333,7 @@ QWidget* pqLacunaOutlinePanel::BuildResults()
     });
   QObject::connect(save, &QToolButton::clicked, this, &pqLacunaOutlinePanel::Save);
   QObject::connect(load, &QToolButton::clicked, this, &pqLacunaOutlinePanel::Load);
-  return box;
+  return row;
 }
 
 //------------------------------------------------------------------------------
@@ -332,10 +367,10 @@ void pqLacunaOutlinePanel::Step(int slices)
 }
 
 //------------------------------------------------------------------------------
-int pqLacunaOutlinePanel::NextNumber(int structure) const
+int pqLacunaOutlinePanel::NextNumber(const Drawing& drawing, int structure)
 {
   int number = 0;
-  for (const Outline& outline : this->Now.Outlines)
+  for (const Outline& outline : drawing.Outlines)
   {
     if (outline.Structure == structure)
     {
@@ -373,7 +408,7 @@ void pqLacunaOutlinePanel::AddOutline(const QPolygonF& points, bool isFreehand)
   Drawing drawing = this->Now;
   const int structure = this->GetStructure();
   drawing.Outlines.push_back(
-    { structure, this->NextNumber(structure), this->Slice, this->Snapped(handles) });
+    { structure, NextNumber(this->Now, structure), this->Slice, this->Snapped(handles) });
   this->Push(drawing);
 }
 
@@ -427,7 +462,7 @@ void pqLacunaOutlinePanel::TraceOutline(const QPointF& place, const QRectF& regi
   drawing.Outlines.erase(std::remove_if(drawing.Outlines.begin(), drawing.Outlines.end(), isThere),
     drawing.Outlines.end());
   drawing.Outlines.push_back(
-    { structure, this->NextNumber(structure), this->Slice, this->Snapped(ToPlaces(few)) });
+    { structure, NextNumber(this->Now, structure), this->Slice, this->Snapped(ToPlaces(few)) });
   const bool isAgain =
     this->LastTrace.IsValid && this->LastTrace.Place == place && this->LastTrace.Region == region;
   isAgain ? this->Replace(drawing) : this->Push(drawing);
@@ -483,7 +518,7 @@ void pqLacunaOutlinePanel::CopyOutline()
   }
   Drawing drawing = this->Now;
   const int from = nearest->Slice;
-  int number = this->NextNumber(structure);
+  int number = NextNumber(this->Now, structure);
   for (const Outline& outline : this->Now.Outlines)
   {
     if (outline.Structure == structure && outline.Slice == from)

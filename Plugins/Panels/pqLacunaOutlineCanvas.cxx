@@ -487,53 +487,10 @@ void pqLacunaOutlineCanvas::paintEvent(QPaintEvent*)
     this->ToWidget({ this->Picture.width() - 0.5, this->Picture.height() - 0.5 });
   painter.drawImage(QRectF(corner, opposite), this->Picture);
 
-  const auto path = [this](const QPolygonF& places, bool isClosed)
-  {
-    QPainterPath line;
-    for (int i = 0; i < places.size(); ++i)
-    {
-      const QPointF at = this->ToWidget(places[i]);
-      i == 0 ? line.moveTo(at) : line.lineTo(at);
-    }
-    if (isClosed)
-    {
-      line.closeSubpath();
-    }
-    return line;
-  };
-  for (const Outline& outline : this->Outlines)
-  {
-    painter.setBrush(Qt::NoBrush);
-    painter.setPen(QPen(Qt::black, 4));
-    painter.drawPath(path(outline.Curve, true));
-    painter.setPen(QPen(outline.Color, outline.IsCurrent ? 2 : 1.4));
-    painter.drawPath(path(outline.Curve, true));
-    painter.setPen(QPen(Qt::black, 1));
-    painter.setBrush(outline.Color);
-    for (const QPointF& handle : outline.Handles)
-    {
-      painter.drawEllipse(this->ToWidget(handle), HandleRadius, HandleRadius);
-    }
-  }
+  this->DrawOutlines(painter);
   if (!this->Pending.isEmpty())
   {
-    painter.setBrush(Qt::NoBrush);
-    painter.setPen(QPen(this->Color, 2));
-    QPainterPath line = path(this->Pending, false);
-    if (this->Tool == Points)
-    {
-      line.lineTo(this->Cursor);
-    }
-    painter.drawPath(line);
-    if (this->Tool == Points)
-    {
-      painter.setBrush(this->Color);
-      painter.setPen(QPen(Qt::black, 1));
-      for (const QPointF& place : this->Pending)
-      {
-        painter.drawEllipse(this->ToWidget(place), HandleRadius, HandleRadius);
-      }
-    }
+    this->DrawPending(painter);
   }
   if (!this->Region.isNull())
   {
@@ -542,7 +499,69 @@ void pqLacunaOutlineCanvas::paintEvent(QPaintEvent*)
     painter.drawRect(
       QRectF(this->ToWidget(this->Region.topLeft()), this->ToWidget(this->Region.bottomRight())));
   }
+  this->DrawTexts(painter);
+}
 
+//------------------------------------------------------------------------------
+QPainterPath pqLacunaOutlineCanvas::GetPath(const QPolygonF& places, bool isClosed) const
+{
+  QPainterPath line;
+  for (int i = 0; i < places.size(); ++i)
+  {
+    const QPointF at = this->ToWidget(places[i]);
+    i == 0 ? line.moveTo(at) : line.lineTo(at);
+  }
+  if (isClosed)
+  {
+    line.closeSubpath();
+  }
+  return line;
+}
+
+//------------------------------------------------------------------------------
+void pqLacunaOutlineCanvas::DrawOutlines(QPainter& painter) const
+{
+  for (const Outline& outline : this->Outlines)
+  {
+    painter.setBrush(Qt::NoBrush);
+    painter.setPen(QPen(Qt::black, 4));
+    painter.drawPath(this->GetPath(outline.Curve, true));
+    painter.setPen(QPen(outline.Color, outline.IsCurrent ? 2 : 1.4));
+    painter.drawPath(this->GetPath(outline.Curve, true));
+    painter.setPen(QPen(Qt::black, 1));
+    painter.setBrush(outline.Color);
+    for (const QPointF& handle : outline.Handles)
+    {
+      painter.drawEllipse(this->ToWidget(handle), HandleRadius, HandleRadius);
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
+void pqLacunaOutlineCanvas::DrawPending(QPainter& painter) const
+{
+  painter.setBrush(Qt::NoBrush);
+  painter.setPen(QPen(this->Color, 2));
+  QPainterPath line = this->GetPath(this->Pending, false);
+  if (this->Tool == Points)
+  {
+    line.lineTo(this->Cursor);
+  }
+  painter.drawPath(line);
+  if (this->Tool == Points)
+  {
+    painter.setBrush(this->Color);
+    painter.setPen(QPen(Qt::black, 1));
+    for (const QPointF& place : this->Pending)
+    {
+      painter.drawEllipse(this->ToWidget(place), HandleRadius, HandleRadius);
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
+void pqLacunaOutlineCanvas::DrawTexts(QPainter& painter) const
+{
   const auto write = [&](int flags, const QString& text)
   {
     const QRect area = this->rect().adjusted(8, 5, -8, -5);

@@ -6,6 +6,7 @@
 
 #include <QColor>
 #include <QImage>
+#include <QPainterPath>
 #include <QPointF>
 #include <QPolygonF>
 #include <QRectF>
@@ -78,6 +79,10 @@ private:
   bool FindCurve(const QPointF& at, int& outline, int& before) const;
   QPointF ToPicture(const QPointF& at) const;
   QString GetHint() const;
+  QPainterPath GetPath(const QPolygonF& places, bool isClosed) const; ///< in the widget
+  void DrawOutlines(QPainter& painter) const;
+  void DrawPending(QPainter& painter) const;
+  void DrawTexts(QPainter& painter) const;
 
   QImage Picture;
   double Aspect = 1;

@@ -23,6 +23,86 @@
 #include <algorithm>
 #include <cmath>
 
+namespace
+{
+// Columns of a file that Save wrote, and where they are in it.
+constexpr int NumberOfColumns = 6;
+constexpr const char* Wanted[NumberOfColumns] = { "structure", "outline", "slice", "column", "row",
+  "handle" };
+struct Columns
+{
+  explicit Columns(const QStringList& titles)
+    : Count(titles.size())
+    , Color(titles.indexOf("color"))
+  {
+    for (int c = 0; c < NumberOfColumns; ++c)
+    {
+      this->At[c] = titles.indexOf(Wanted[c]);
+    }
+  }
+  int Count;
+  int At[NumberOfColumns]; // -1: not there
+  int Color;               // needs not be there
+};
+
+// A row of such a file: a point of an outline.
+struct SavedPoint
+{
+  QString Structure;
+  int Outline = 0;
+  int Slice = 0;
+  QPointF Place; // column, row
+  bool IsHandle = false;
+  QColor Color; // invalid: none
+};
+
+// Takes the name off a row, whose first column it is, with or without quotes.
+QString TakeName(QString& row)
+{
+  QString name;
+  if (row.startsWith('"'))
+  {
+    int end = 1;
+    while (end < row.size() && (row[end] != '"' || (end + 1 < row.size() && row[end + 1] == '"')))
+    {
+      end += row[end] == '"' ? 2 : 1;
+    }
+    name = row.mid(1, end - 1).replace("\"\"", "\"");
+    row = row.mid(end + 1);
+  }
+  else
+  {
+    name = row.section(',', 0, 0);
+    row = row.mid(name.size());
+  }
+  return name;
+}
+
+// Whether a row has all columns, as finite numbers.
+bool ReadPoint(QString row, const Columns& columns, SavedPoint& point)
+{
+  point.Structure = TakeName(row);
+  const QStringList values = row.split(',');
+  double number[NumberOfColumns] = { 0, 0, 0, 0, 0, 0 };
+  bool isGood = values.size() == columns.Count && columns.At[0] == 0;
+  for (int c = 1; c < NumberOfColumns && isGood; ++c)
+  {
+    number[c] = values[columns.At[c]].toDouble(&isGood);
+    isGood = isGood && std::isfinite(number[c]) &&
+      (c > 2 || (number[c] == std::floor(number[c]) && std::abs(number[c]) < 1 << 30));
+  }
+  if (isGood)
+  {
+    point.Outline = static_cast<int>(number[1]);
+    point.Slice = static_cast<int>(number[2]);
+    point.Place = { number[3], number[4] };
+    point.IsHandle = number[5] != 0;
+    point.Color = QColor(columns.Color >= 0 ? values[columns.Color] : QString());
+  }
+  return isGood;
+}
+}
+
 //------------------------------------------------------------------------------
 void pqLacunaOutlinePanel::Save()
 {
@@ -111,117 +191,95 @@ void pqLacunaOutlinePanel::Load()
     return;
   }
   QFile file(name);
-  const auto fail = [&](const QString& why)
-  { QMessageBox::critical(this, tr("Load outlines"), tr("%1: %2").arg(name, why)); };
-  if (!file.open(QIODevice::ReadOnly | QIODevice::Text))
-  {
-    fail(file.errorString());
-    return;
-  }
-  QString rows = QString::fromUtf8(file.readAll());
-  QTextStream text(&rows);
-  const QStringList titles = text.readLine().split(',');
-  int at[7];
-  const char* const wanted[6] = { "structure", "outline", "slice", "column", "row", "handle" };
-  at[6] = titles.indexOf("color"); // needs not be there
-  for (int c = 0; c < 6; ++c)
-  {
-    at[c] = titles.indexOf(wanted[c]);
-    if (at[c] < 0)
-    {
-      fail(tr(
-        "it has no column '%1'. This panel reads what it saved; Outline Reader (File > Open) reads "
-        "outlines of other programs, for the filter Outlined Structures")
-             .arg(wanted[c]));
-      return;
-    }
-  }
+  QString failure;
   Drawing drawing = this->Now;
   QVector<Outline> found;
-  int line = 1;
-  while (!text.atEnd())
+  if (!file.open(QIODevice::ReadOnly | QIODevice::Text))
   {
-    ++line;
-    QString row = text.readLine();
-    // the name is the first column, in quotes
-    QString structure;
-    if (row.startsWith('"'))
+    failure = file.errorString();
+  }
+  else
+  {
+    failure = this->ReadOutlines(QString::fromUtf8(file.readAll()), drawing, found);
+  }
+  if (failure.isEmpty())
+  {
+    failure = AddOutlines(found, drawing);
+  }
+  if (!failure.isEmpty())
+  {
+    QMessageBox::critical(this, tr("Load outlines"), tr("%1: %2").arg(name, failure));
+    return;
+  }
+  this->Push(drawing);
+}
+
+//------------------------------------------------------------------------------
+QString pqLacunaOutlinePanel::ReadOutlines(
+  QString rows, Drawing& drawing, QVector<Outline>& found) const
+{
+  QTextStream text(&rows);
+  const Columns columns(text.readLine().split(','));
+  for (int c = 0; c < NumberOfColumns; ++c)
+  {
+    if (columns.At[c] < 0)
     {
-      int end = 1;
-      while (end < row.size() && (row[end] != '"' || (end + 1 < row.size() && row[end + 1] == '"')))
-      {
-        end += row[end] == '"' ? 2 : 1;
-      }
-      structure = row.mid(1, end - 1).replace("\"\"", "\"");
-      row = row.mid(end + 1);
+      return tr(
+        "it has no column '%1'. This panel reads what it saved; Outline Reader (File > Open) reads "
+        "outlines of other programs, for the filter Outlined Structures")
+        .arg(Wanted[c]);
     }
-    else
+  }
+  for (int line = 2; !text.atEnd(); ++line)
+  {
+    SavedPoint point;
+    if (!ReadPoint(text.readLine(), columns, point))
     {
-      structure = row.section(',', 0, 0);
-      row = row.mid(structure.size());
+      return tr("line %1 has not the columns of the first line, as finite numbers").arg(line);
     }
-    const QStringList values = row.split(',');
-    double number[6] = { 0, 0, 0, 0, 0, 0 };
-    bool isGood = values.size() == titles.size() && at[0] == 0;
-    for (int c = 1; c < 6 && isGood; ++c)
-    {
-      number[c] = values[at[c]].toDouble(&isGood);
-      isGood = isGood && std::isfinite(number[c]) &&
-        (c > 2 || (number[c] == std::floor(number[c]) && std::abs(number[c]) < 1 << 30));
-    }
-    if (!isGood)
-    {
-      fail(tr("line %1 has not the columns of the first line, as finite numbers").arg(line));
-      return;
-    }
-    int n = static_cast<int>(drawing.Names.indexOf(structure));
+    int n = static_cast<int>(drawing.Names.indexOf(point.Structure));
     if (n < 0)
     {
       n = static_cast<int>(drawing.Names.size());
-      drawing.Names.push_back(structure);
-      const QColor color(at[6] >= 0 ? values[at[6]] : QString());
-      drawing.Colors.push_back(color.isValid() ? color : GetOwnColor(n));
+      drawing.Names.push_back(point.Structure);
+      drawing.Colors.push_back(point.Color.isValid() ? point.Color : GetOwnColor(n));
     }
-    const int outline = static_cast<int>(number[1]);
-    const int slice = static_cast<int>(number[2]);
-    if (slice < this->SliceSlider->minimum() || slice > this->SliceSlider->maximum())
+    if (point.Slice < this->SliceSlider->minimum() || point.Slice > this->SliceSlider->maximum())
     {
-      fail(tr("line %1 is of slice %2, which is not there").arg(line).arg(slice));
-      return;
+      return tr("line %1 is of slice %2, which is not there").arg(line).arg(point.Slice);
     }
-    if (found.isEmpty() || found.back().Structure != n + 1 || found.back().Number != outline)
+    if (found.isEmpty() || found.back().Structure != n + 1 || found.back().Number != point.Outline)
     {
-      found.push_back({ n + 1, outline, slice, {} });
+      found.push_back({ n + 1, point.Outline, point.Slice, {} });
     }
-    if (found.back().Slice != slice)
+    if (found.back().Slice != point.Slice)
     {
-      fail(tr("line %1: outline %2 of %3 is in slice %4, too")
-             .arg(line)
-             .arg(outline)
-             .arg(structure)
-             .arg(found.back().Slice));
-      return;
+      return tr("line %1: outline %2 of %3 is in slice %4, too")
+        .arg(line)
+        .arg(point.Outline)
+        .arg(point.Structure)
+        .arg(found.back().Slice);
     }
-    if (number[5] != 0)
+    if (point.IsHandle)
     {
-      found.back().Handles.push_back({ number[3], number[4] });
+      found.back().Handles.push_back(point.Place);
     }
   }
+  return {};
+}
+
+//------------------------------------------------------------------------------
+QString pqLacunaOutlinePanel::AddOutlines(QVector<Outline>& found, Drawing& drawing)
+{
   for (Outline& outline : found)
   {
     if (outline.Handles.size() < 3)
     {
-      fail(tr("an outline in slice %1 has fewer than three points with 'handle' 1")
-             .arg(outline.Slice));
-      return;
+      return tr("an outline in slice %1 has fewer than three points with 'handle' 1")
+        .arg(outline.Slice);
     }
-    int number = 0;
-    for (const Outline& other : drawing.Outlines)
-    {
-      number = other.Structure == outline.Structure ? std::max(number, other.Number + 1) : number;
-    }
-    outline.Number = number;
+    outline.Number = NextNumber(drawing, outline.Structure);
     drawing.Outlines.push_back(outline);
   }
-  this->Push(drawing);
+  return {};
 }

@@ -15,6 +15,7 @@
 
 #include "vtkSmartPointer.h"
 
+class QButtonGroup;
 class QCheckBox;
 class QComboBox;
 class QDoubleSpinBox;
@@ -80,8 +81,15 @@ private:
   };
 
   void Build();
-  QWidget* BuildTools();
-  QWidget* BuildResults();
+  QWidget* BuildTools(); ///< above the picture
+  QLayout* BuildStructures(QWidget* box);
+  QLayout* BuildToolButtons(QWidget* box, QButtonGroup* tools);
+  void BuildLevel(QWidget* box);
+  QWidget* BuildResults(); ///< below it
+  QLayout* BuildSlices(QWidget* box);
+  QLayout* BuildEditing();
+  void BuildTable(QWidget* box); ///< and the summary
+  QLayout* BuildFiles(QWidget* box);
   void Read();                          ///< the properties
   void Push(const Drawing& drawing);    ///< makes it the properties, and remembers what was
   void Replace(const Drawing& drawing); ///< the same without remembering
@@ -97,7 +105,11 @@ private:
   void LookAtSlice(pqView* view);
   int GetStructure() const;
   static QColor GetOwnColor(int n);
-  int NextNumber(int structure) const;
+  static int NextNumber(const Drawing& drawing, int structure);
+  /// Reads what Save wrote; new structures go into the drawing. Returns what is wrong, or nothing.
+  QString ReadOutlines(QString rows, Drawing& drawing, QVector<Outline>& found) const;
+  /// Numbers outlines anew. Returns what is wrong, or nothing.
+  static QString AddOutlines(QVector<Outline>& found, Drawing& drawing);
   void Tell(const QString& message, bool isReady = false);
   QPolygonF Snapped(const QPolygonF& handles) const;
   QPolygonF ToCanvas(const QPolygonF& places) const; ///< columns and rows to pixels of the picture

@@ -201,8 +201,6 @@ std::string vtkLacunaTrackedSliceReader::Parameters(int) const
 //------------------------------------------------------------------------------
 void vtkLacunaTrackedSliceReader::MakeFieldData()
 {
-  auto fields = vtkSmartPointer<vtkImageData>::New();
-  vtkImageData* output = fields;
   const lacuna::SequenceHeader& header = this->Opened->File->Header;
   lacuna::SweepOptions options;
   options.CalibrationFileName = Text(this->CalibrationFileName);
@@ -211,12 +209,28 @@ void vtkLacunaTrackedSliceReader::MakeFieldData()
   options.DropInvalid = this->DropInvalidSlices;
   options.FramesWithPixels = this->Opened->File->Pixels->GetNumberOfWholeFrames();
   const lacuna::Sweep sweep = lacuna::BuildSweep(header, options);
-
+  auto fields = vtkSmartPointer<vtkImageData>::New();
   // The arrays of the contract come last: no field of the file takes their place.
+  const std::vector<std::string> steps = this->AddTexts(sweep, fields);
+  this->AddContract(sweep, fields);
+  if (!steps.empty()) // the base goes on with them
+  {
+    AddStrings(fields, lacuna::Provenance::ArrayName, steps);
+  }
+  this->Opened->Chain = sweep.Chain;
+  this->WarnOf(sweep);
+  this->Opened->Fields = fields;
+}
+
+//------------------------------------------------------------------------------
+// Fields of the file; returns the steps of its provenance.
+std::vector<std::string> vtkLacunaTrackedSliceReader::AddTexts(
+  const lacuna::Sweep& sweep, vtkImageData* output) const
+{
   std::vector<std::string> steps;
   const auto isKept = [&](const std::string& name, const std::vector<std::string>& texts)
   { return this->KeepPatientIdentity || !lacuna::IdentifiesPatient(name, texts); };
-  for (const auto& [name, value] : header.CustomFields)
+  for (const auto& [name, value] : this->Opened->File->Header.CustomFields)
   {
     if (!isKept(name, { value }) ||
       sweep.HeaderTransforms.count(lacuna::SweepTransforms::GetTransformName(name)) > 0)
@@ -240,6 +254,14 @@ void vtkLacunaTrackedSliceReader::MakeFieldData()
       AddStrings(output, name, texts);
     }
   }
+  return steps;
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaTrackedSliceReader::AddContract(
+  const lacuna::Sweep& sweep, vtkImageData* output) const
+{
+  const lacuna::SequenceHeader& header = this->Opened->File->Header;
   for (const auto& [name, matrices] : sweep.Transforms)
   {
     lacuna::FieldData::SetMatrices(output, name, matrices);
@@ -256,20 +278,20 @@ void vtkLacunaTrackedSliceReader::MakeFieldData()
       output, lacuna::SequenceNames::ImageType, { signal ? header.ImageType : "BRIGHTNESS" });
     AddStrings(output, lacuna::SequenceNames::Orientation, { header.Flips.Lines ? "FM" : "MFA" });
   }
-  AddStrings(output, lacuna::SequenceNames::Frames, { sweep.ImageFrame, options.ReferenceFrame });
+  AddStrings(
+    output, lacuna::SequenceNames::Frames, { sweep.ImageFrame, Text(this->ReferenceFrame) });
   lacuna::TrackedSlices::Write(
     output, sweep.ImageToReference, sweep.Timestamps, sweep.Status, sweep.FrameNumbers);
   if (!this->Preview.empty())
   {
     AddStrings(output, lacuna::TrackedSlices::PreviewName, { this->Preview });
   }
-  if (!steps.empty()) // the base goes on with them
-  {
-    AddStrings(output, lacuna::Provenance::ArrayName, steps);
-  }
-  this->Opened->Chain = sweep.Chain;
+}
 
-  std::vector<std::string> warnings = header.Warnings;
+//------------------------------------------------------------------------------
+void vtkLacunaTrackedSliceReader::WarnOf(const lacuna::Sweep& sweep)
+{
+  std::vector<std::string> warnings = this->Opened->File->Header.Warnings;
   if (!this->Opened->File->Pixels->GetWarning().empty())
   {
     warnings.push_back(this->Opened->File->Pixels->GetWarning());
@@ -288,7 +310,6 @@ void vtkLacunaTrackedSliceReader::MakeFieldData()
   {
     vtkWarningMacro(<< lacuna::ToPrintable(this->FileName + (": " + warning)));
   }
-  this->Opened->Fields = fields;
 }
 
 //------------------------------------------------------------------------------

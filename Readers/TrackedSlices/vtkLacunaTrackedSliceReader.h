@@ -78,6 +78,7 @@
 namespace lacuna
 {
 class AlgorithmExecution;
+struct Sweep;
 }
 
 class VTKLACUNAREADERSTRACKEDSLICES_EXPORT vtkLacunaTrackedSliceReader
@@ -181,6 +182,9 @@ private:
   void ReadPixels(vtkImageData* output, int shown, lacuna::AlgorithmExecution& execution);
   void HideSlices(vtkImageData* output, int shown) const;
   void MakeFieldData();
+  std::vector<std::string> AddTexts(const lacuna::Sweep& sweep, vtkImageData* output) const;
+  void AddContract(const lacuna::Sweep& sweep, vtkImageData* output) const;
+  void WarnOf(const lacuna::Sweep& sweep);
 
   char* FileName = nullptr;
   char* CalibrationFileName = nullptr;

@@ -40,6 +40,7 @@
 
 namespace lacuna
 {
+struct AcquisitionRules;
 struct LiveSweep;
 }
 
@@ -206,6 +207,8 @@ private:
   void Open();
   void Close();
   void Configure();
+  lacuna::AcquisitionRules MakeRules(bool keepsCalibration);
+  void Apply(lacuna::AcquisitionRules rules, bool keepsCalibration);
   bool TakeOver();
   void CollectNews();
 

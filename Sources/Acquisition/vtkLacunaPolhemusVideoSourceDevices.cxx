@@ -149,57 +149,14 @@ void vtkLacunaPolhemusVideoSource::Configure()
   now.Tried = tried;
   try
   {
-    lacuna::AcquisitionRules rules;
-    if (!calibration.empty())
-    {
-      const lacuna::ProbeFrames frames = lacuna::ReadProbeFrames(calibration, this->PixelSpacing);
-      rules.ImageToProbe = frames.ImageToProbe;
-      rules.TrackerToReference = frames.TrackerToReference;
-      if (!frames.Warning.empty())
-      {
-        vtkWarningMacro(<< lacuna::ToPrintable(calibration + ": " + frames.Warning));
-      }
-    }
     // One that is chosen together with other devices is theirs.
     const bool keepsCalibration = wait && now.Calibration.Calibrated;
-    if (keepsCalibration)
-    {
-      rules.ImageToProbe = now.Calibration.ImageToProbe;
-      rules.TrackerToReference = now.Calibration.TrackerToReference;
-    }
-    rules.Mode = static_cast<lacuna::CaptureMode>(this->CaptureMode);
-    rules.MovementThreshold = this->MovementThreshold;
-    rules.SpeedLimit = this->SpeedLimit;
-    rules.TimeOffset = this->TimeOffset;
-    rules.HoldLastPose = this->HoldLastPose;
-    rules.RecordFileName = Text(this->RecordFileName);
-    rules.RecordCompressionLevel = this->RecordCompression;
-    rules.MemoryLimit = this->MemoryLimit * Mebibyte;
-    lacuna::CheckRules(rules);
+    const lacuna::AcquisitionRules rules = this->MakeRules(keepsCalibration);
     if (reopen)
     {
       this->Open();
     }
-    // of the devices that are open now
-    rules.ButtonStarts = this->ButtonStarts && !now.StackIsOfOthers;
-    if (this->MemoryLimit == 0)
-    {
-      rules.MemoryLimit = now.FreeBytes / 2;
-    }
-    now.Acquisition->SetRules(rules);
-    now.Rules = rules;
-    now.LimitBytes = rules.MemoryLimit;
-    now.Calibration.Calibrated = rules.ImageToProbe.has_value();
-    now.Calibration.ImageToProbe = rules.ImageToProbe.value_or(lacuna::Matrix4());
-    now.Calibration.TrackerToReference = rules.TrackerToReference;
-    if (!now.StackIsOfOthers && !keepsCalibration) // else another probe may have taken them
-    {
-      now.TakenBy = now.DescribeDevices() + " " + this->DescribeRules();
-      if (now.Stack)
-      {
-        now.Stack->Calibrate(now.Calibration);
-      }
-    }
+    this->Apply(rules, keepsCalibration);
     if (calibration.empty() && !now.ToldUncalibrated)
     {
       vtkWarningMacro("The probe is not calibrated: slices have no ImageToReference. Set "
@@ -216,6 +173,66 @@ void vtkLacunaPolhemusVideoSource::Configure()
     {
       now.Rules.ButtonStarts = false; // as Start, which does nothing with rules that are not wanted
       now.Acquisition->SetRules(now.Rules);
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
+// What the properties say; keepsCalibration: with the calibration that holds now. Throws.
+lacuna::AcquisitionRules vtkLacunaPolhemusVideoSource::MakeRules(bool keepsCalibration)
+{
+  const lacuna::LiveSweep& now = *this->Now;
+  const std::string calibration = Text(this->CalibrationFileName);
+  lacuna::AcquisitionRules rules;
+  if (!calibration.empty())
+  {
+    const lacuna::ProbeFrames frames = lacuna::ReadProbeFrames(calibration, this->PixelSpacing);
+    rules.ImageToProbe = frames.ImageToProbe;
+    rules.TrackerToReference = frames.TrackerToReference;
+    if (!frames.Warning.empty())
+    {
+      vtkWarningMacro(<< lacuna::ToPrintable(calibration + ": " + frames.Warning));
+    }
+  }
+  if (keepsCalibration)
+  {
+    rules.ImageToProbe = now.Calibration.ImageToProbe;
+    rules.TrackerToReference = now.Calibration.TrackerToReference;
+  }
+  rules.Mode = static_cast<lacuna::CaptureMode>(this->CaptureMode);
+  rules.MovementThreshold = this->MovementThreshold;
+  rules.SpeedLimit = this->SpeedLimit;
+  rules.TimeOffset = this->TimeOffset;
+  rules.HoldLastPose = this->HoldLastPose;
+  rules.RecordFileName = Text(this->RecordFileName);
+  rules.RecordCompressionLevel = this->RecordCompression;
+  rules.MemoryLimit = this->MemoryLimit * Mebibyte;
+  lacuna::CheckRules(rules);
+  return rules;
+}
+
+//------------------------------------------------------------------------------
+// Gives the rules to the devices that are open now, and the calibration to the slices they took.
+void vtkLacunaPolhemusVideoSource::Apply(lacuna::AcquisitionRules rules, bool keepsCalibration)
+{
+  lacuna::LiveSweep& now = *this->Now;
+  rules.ButtonStarts = this->ButtonStarts && !now.StackIsOfOthers;
+  if (this->MemoryLimit == 0)
+  {
+    rules.MemoryLimit = now.FreeBytes / 2;
+  }
+  now.Acquisition->SetRules(rules);
+  now.Rules = rules;
+  now.LimitBytes = rules.MemoryLimit;
+  now.Calibration.Calibrated = rules.ImageToProbe.has_value();
+  now.Calibration.ImageToProbe = rules.ImageToProbe.value_or(lacuna::Matrix4());
+  now.Calibration.TrackerToReference = rules.TrackerToReference;
+  if (!now.StackIsOfOthers && !keepsCalibration) // else another probe may have taken them
+  {
+    now.TakenBy = now.DescribeDevices() + " " + this->DescribeRules();
+    if (now.Stack)
+    {
+      now.Stack->Calibrate(now.Calibration);
     }
   }
 }

@@ -166,27 +166,6 @@ float GetBackground(const SliceImage& slice)
 }
 }
 
-std::int64_t PixelSet::GetSize() const
-{
-  return std::count(this->Members.begin(), this->Members.end(), char(1));
-}
-
-PixelSet PixelSet::Flipped() const
-{
-  PixelSet flipped(this->Width, this->Height);
-  for (int row = 0; row < this->Height; ++row)
-  {
-    for (int column = 0; column < this->Width; ++column)
-    {
-      if (this->Has(column, row))
-      {
-        flipped.Put(column, this->Height - 1 - row);
-      }
-    }
-  }
-  return flipped;
-}
-
 std::vector<std::size_t> ActivityMap::ChooseSlices(std::size_t count)
 {
   std::vector<std::size_t> chosen(std::min(MostSlices, count));

@@ -5,6 +5,7 @@
 #ifndef lacunaActivityMap_h
 #define lacunaActivityMap_h
 
+#include "lacunaPixelSet.h"
 #include "lacunaSliceImage.h"
 
 #include <cstddef>
@@ -13,35 +14,6 @@
 
 namespace lacuna
 {
-/// The pixels of one connected part of an image.
-class PixelSet
-{
-public:
-  PixelSet(int width, int height)
-    : Width(width)
-    , Height(height)
-    , Members(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), 0)
-  {
-  }
-
-  int GetWidth() const { return this->Width; }
-  int GetHeight() const { return this->Height; }
-  bool Has(int column, int row) const { return this->Members[this->Index(column, row)] != 0; }
-  void Put(int column, int row) { this->Members[this->Index(column, row)] = 1; }
-  std::int64_t GetSize() const;
-  /// Upside down.
-  PixelSet Flipped() const;
-
-private:
-  std::size_t Index(int column, int row) const
-  {
-    return static_cast<std::size_t>(row) * static_cast<std::size_t>(this->Width) +
-      static_cast<std::size_t>(column);
-  }
-  int Width, Height;
-  std::vector<char> Members;
-};
-
 /// How much each pixel changes over a sweep.
 class ActivityMap
 {

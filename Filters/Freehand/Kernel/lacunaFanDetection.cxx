@@ -253,13 +253,9 @@ PolarOutline MakePolarOutline(
   return outline;
 }
 
-// A sector that opens downwards.
-Trial TrySector(
-  const PixelSet& part, const Outline& outline, const Vec2& pixelSpacing, const std::string& verb)
+// The left and the right side of a sector that opens downwards; lengths are in columns.
+std::array<BorderLine, 2> FindSides(const Outline& outline, double aspect, double tolerance)
 {
-  const double aspect = pixelSpacing[1] / pixelSpacing[0];
-  const double tolerance = Tolerance * std::max(1.0, aspect);
-  Trial trial;
   std::vector<BorderPoint> leftPoints, rightPoints;
   for (const Outline::Row& row : outline.Rows)
   {
@@ -272,26 +268,38 @@ Trial TrySector(
       rightPoints.push_back({ aspect * row.Number, double(row.Last) });
     }
   }
-  BorderLine left = FindBorderLine(leftPoints, -1, tolerance);
-  BorderLine right = FindBorderLine(rightPoints, 1, tolerance);
-  const Vec2 angles{ std::atan(left.Slope), std::atan(right.Slope) };
+  return { FindBorderLine(leftPoints, -1, tolerance), FindBorderLine(rightPoints, 1, tolerance) };
+}
+
+// Why these are no sides of a sector; empty: they are.
+std::string DoubtSides(const BorderLine& left, const BorderLine& right, const Vec2& angles)
+{
   if (left.Support < LeastSupport || right.Support < LeastSupport)
   {
-    trial.Doubt = std::string("the ") + (left.Support < right.Support ? "left" : "right") +
+    return std::string("the ") + (left.Support < right.Support ? "left" : "right") +
       " side of a sector is confirmed by only " + Percent(std::min(left.Support, right.Support)) +
       " of its length";
-    return trial;
   }
   if (!((angles[1] - angles[0]) * 180 / Pi > SmallestOpening))
   {
-    trial.Doubt = "its sides do not open like those of a sector";
-    return trial;
+    return "its sides do not open like those of a sector";
   }
-  trial.Fan.Support = std::min(left.Support, right.Support);
+  return {};
+}
+
+// Where the sides meet.
+Vec2 FindOrigin(BorderLine left, BorderLine right, double aspect)
+{
   left.Offset -= HalfPixel * std::sqrt(1 + left.Slope * left.Slope);
   right.Offset += HalfPixel * std::sqrt(1 + right.Slope * right.Slope);
   const double y = (left.Offset - right.Offset) / (right.Slope - left.Slope);
-  const Vec2 origin{ left.At(y), y / aspect };
+  return { left.At(y), y / aspect };
+}
+
+// Of the arcs of a sector, in columns; the trial is told their support, or why they are doubtful.
+Vec2 FindRadii(const PixelSet& part, const Vec2& origin, const Vec2& angles, double aspect,
+  double tolerance, Trial& trial)
+{
   const double opening = angles[1] - angles[0];
   const PolarOutline polar = MakePolarOutline(part, origin, angles, aspect, MostDirections);
   const BorderLevel outer = FindBorderLevel(polar.Farthest, 1, tolerance);
@@ -312,7 +320,7 @@ Trial TrySector(
     {
       trial.Doubt = "the near arc of a sector is confirmed by only " + Percent(inner.Support) +
         " of its length";
-      return trial;
+      return radii;
     }
     radii[0] = GetQuantile(nearPolar.Nearest, 0.1) - HalfPixel;
   }
@@ -328,11 +336,66 @@ Trial TrySector(
   {
     trial.Doubt =
       "the far arc of a sector is confirmed by only " + Percent(outer.Support) + " of its length";
-    return trial;
   }
-  if (!polar.IsCutFar)
+  else if (!polar.IsCutFar)
   {
     trial.Fan.Support = std::min(trial.Fan.Support, outer.Support);
+  }
+  return radii;
+}
+
+// A sector that is larger by a margin (mm) on all sides; its angles are in radians.
+Fan Grow(const Fan& sector, const Vec2& angles, double margin, const Vec2& pixelSpacing)
+{
+  Fan grown = sector;
+  grown.Radii = { std::max(0.0, grown.Radii[0] - margin), grown.Radii[1] + margin };
+  // sides moved outwards by the margin: the origin moves back along the bisector
+  const double half = 0.5 * (angles[1] - angles[0]);
+  const double middle = 0.5 * (angles[1] + angles[0]);
+  const double back = margin / std::sin(half);
+  grown.Origin = { sector.Origin[0] - back * std::sin(middle) / pixelSpacing[0],
+    sector.Origin[1] - back * std::cos(middle) / pixelSpacing[1] };
+  grown.Radii[1] += back;
+  return grown;
+}
+
+// First column and row, columns and rows of what a mask lets through.
+std::array<int, 4> GetBox(const FanMask& mask, int width, int height)
+{
+  int box[4] = { width, height, -1, -1 };
+  for (int row = 0; row < height; ++row)
+  {
+    for (const IndexInterval& run : mask.GetRuns(row))
+    {
+      box[0] = std::min(box[0], static_cast<int>(run.First));
+      box[2] = std::max(box[2], static_cast<int>(run.Last));
+      box[1] = std::min(box[1], row);
+      box[3] = row;
+    }
+  }
+  return { box[0], box[1], box[2] - box[0] + 1, box[3] - box[1] + 1 };
+}
+
+// A sector that opens downwards.
+Trial TrySector(
+  const PixelSet& part, const Outline& outline, const Vec2& pixelSpacing, const std::string& verb)
+{
+  const double aspect = pixelSpacing[1] / pixelSpacing[0];
+  const double tolerance = Tolerance * std::max(1.0, aspect);
+  Trial trial;
+  const auto [left, right] = FindSides(outline, aspect, tolerance);
+  const Vec2 angles{ std::atan(left.Slope), std::atan(right.Slope) };
+  trial.Doubt = DoubtSides(left, right, angles);
+  if (!trial.Doubt.empty())
+  {
+    return trial;
+  }
+  trial.Fan.Support = std::min(left.Support, right.Support);
+  const Vec2 origin = FindOrigin(left, right, aspect);
+  const Vec2 radii = FindRadii(part, origin, angles, aspect, tolerance, trial);
+  if (!trial.Doubt.empty())
+  {
+    return trial;
   }
   const double mm = pixelSpacing[0];
   trial.Fan.IsSector = true;
@@ -345,34 +408,13 @@ Trial TrySector(
     return trial;
   }
   const FanMask mask(trial.Fan.Sector, part.GetWidth(), part.GetHeight(), pixelSpacing);
-  Fan grown = trial.Fan.Sector;
-  const double margin = 1.5 * tolerance * mm;
-  grown.Radii = { std::max(0.0, grown.Radii[0] - margin), grown.Radii[1] + margin };
-  // sides moved outwards by the margin: the origin moves back along the bisector
-  const double half = 0.5 * (angles[1] - angles[0]);
-  const double middle = 0.5 * (angles[1] + angles[0]);
-  const double back = margin / std::sin(half);
-  grown.Origin = { origin[0] - back * std::sin(middle) / pixelSpacing[0],
-    origin[1] - back * std::cos(middle) / pixelSpacing[1] };
-  grown.Radii[1] += back;
-  const FanMask nearly(grown, part.GetWidth(), part.GetHeight(), pixelSpacing);
+  const FanMask nearly(Grow(trial.Fan.Sector, angles, 1.5 * tolerance * mm, pixelSpacing),
+    part.GetWidth(), part.GetHeight(), pixelSpacing);
   trial.Doubt = CompareAreas(
     part, verb, [&](int c, int r) { return mask.Contains(c, r); },
     [&](int c, int r) { return nearly.Contains(c, r); });
   trial.Doubt = trial.Doubt.empty() ? "" : "of a sector: " + trial.Doubt;
-
-  int box[4] = { part.GetWidth(), part.GetHeight(), -1, -1 };
-  for (int row = 0; row < part.GetHeight(); ++row)
-  {
-    for (const IndexInterval& run : mask.GetRuns(row))
-    {
-      box[0] = std::min(box[0], static_cast<int>(run.First));
-      box[2] = std::max(box[2], static_cast<int>(run.Last));
-      box[1] = std::min(box[1], row);
-      box[3] = row;
-    }
-  }
-  trial.Fan.Rectangle = { box[0], box[1], box[2] - box[0] + 1, box[3] - box[1] + 1 };
+  trial.Fan.Rectangle = GetBox(mask, part.GetWidth(), part.GetHeight());
   return trial;
 }
 

@@ -193,6 +193,64 @@ void CheckPixelSizes(const Vec3& first, std::size_t firstRow, const Vec3& length
     }
   }
 }
+
+// A row's pose as it is used; false where there is none. finding: what is wrong with it.
+bool ReadPose(const double* row, std::size_t count, const PoseTableOptions& options, Matrix4& pose,
+  GeometryFinding& finding)
+{
+  if (!ReadRow(row, count, options.Format, pose, finding))
+  {
+    return false;
+  }
+  const GeometryFinding converted = Convert(pose, options);
+  finding = GetAction(GeometryOrigin::Table, finding.Fault) < GeometryAction::Flag && converted
+    ? converted
+    : finding;
+  return true;
+}
+
+// Rows of a table that are not as they should be.
+struct OddRows
+{
+  std::vector<std::size_t> Stated;
+  std::vector<std::size_t> Missing;
+  std::vector<std::size_t> Zero;
+  std::vector<std::size_t> Faulty;
+  std::string FirstFault;
+  std::vector<std::size_t> Doubtful;
+  std::string FirstDoubt;
+
+  std::vector<std::string> Describe() const
+  {
+    std::vector<std::string> warnings;
+    if (!this->Stated.empty())
+    {
+      warnings.push_back("the pose in " + DescribeItems("row", this->Stated) +
+        " is not valid by its state; flagged in SliceStatus");
+    }
+    if (!this->Missing.empty())
+    {
+      warnings.push_back("there is no pose in " + DescribeItems("row", this->Missing) +
+        " (numbers are missing or not finite, or all zero); flagged in SliceStatus");
+    }
+    if (!this->Zero.empty())
+    {
+      warnings.push_back("all numbers are 0 in " + DescribeItems("row", this->Zero) +
+        ": taken as a pose. If these rows are empty, write nan: ParaView reads empty cells as 0");
+    }
+    if (!this->Faulty.empty())
+    {
+      warnings.push_back("what is in " + DescribeItems("row", this->Faulty) +
+        " is no pose (the first one: " + this->FirstFault + "); flagged in SliceStatus");
+    }
+    if (!this->Doubtful.empty())
+    {
+      warnings.push_back("the pose in " + DescribeItems("row", this->Doubtful) +
+        " may be wrong (the first one: " + this->FirstDoubt + "); it is used");
+    }
+    return warnings;
+  }
+};
 }
 
 //------------------------------------------------------------------------------
@@ -203,33 +261,24 @@ PoseTable ReadPoseTable(const std::vector<double>& numbers, std::size_t count,
   PoseTable table;
   table.ToReference.assign(rows, NoPose());
   table.Usable.assign(rows, 0);
-  std::vector<std::size_t> stated;
-  std::vector<std::size_t> missing;
-  std::vector<std::size_t> faulty;
-  std::vector<std::size_t> zero;
-  std::string firstFault;
-  std::vector<std::size_t> doubtful;
-  std::string firstDoubt;
+  OddRows odd;
   Vec3 sizes{};
   std::size_t first = rows;
   for (std::size_t i = 0; i < rows; ++i)
   {
     if (!refused.empty() && refused[i])
     {
-      stated.push_back(i);
+      odd.Stated.push_back(i);
       continue;
     }
+    const double* row = numbers.data() + i * count;
     Matrix4 pose;
     GeometryFinding finding;
-    if (!ReadRow(numbers.data() + i * count, count, options.Format, pose, finding))
+    if (!ReadPose(row, count, options, pose, finding))
     {
-      missing.push_back(i);
+      odd.Missing.push_back(i);
       continue;
     }
-    const GeometryFinding converted = Convert(pose, options);
-    finding = GetAction(GeometryOrigin::Table, finding.Fault) < GeometryAction::Flag && converted
-      ? converted
-      : finding;
     const GeometryAction action = GetAction(GeometryOrigin::Table, finding.Fault);
     if (action >= GeometryAction::Flag)
     {
@@ -238,14 +287,14 @@ PoseTable ReadPoseTable(const std::vector<double>& numbers, std::size_t count,
         throw std::runtime_error(
           "the pose in row " + std::to_string(i) + " is none: " + Describe(finding));
       }
-      firstFault = faulty.empty() ? Describe(finding) : firstFault;
-      faulty.push_back(i);
+      odd.FirstFault = odd.Faulty.empty() ? Describe(finding) : odd.FirstFault;
+      odd.Faulty.push_back(i);
       continue;
     }
     if (action == GeometryAction::Warn)
     {
-      firstDoubt = doubtful.empty() ? Describe(finding) : firstDoubt;
-      doubtful.push_back(i);
+      odd.FirstDoubt = odd.Doubtful.empty() ? Describe(finding) : odd.FirstDoubt;
+      odd.Doubtful.push_back(i);
     }
     if (IsScaled(options))
     {
@@ -255,10 +304,9 @@ PoseTable ReadPoseTable(const std::vector<double>& numbers, std::size_t count,
     }
     // poses are often counted from the first one, but hardly come back to it to the last digit
     if (options.Format == PoseFormat::Euler && i > 0 &&
-      std::all_of(numbers.data() + i * count, numbers.data() + (i + 1) * count,
-        [](double v) { return v == 0; }))
+      std::all_of(row, row + count, [](double v) { return v == 0; }))
     {
-      zero.push_back(i);
+      odd.Zero.push_back(i);
     }
     first = std::min(first, i);
     table.ToReference[i] = pose;
@@ -270,31 +318,7 @@ PoseTable ReadPoseTable(const std::vector<double>& numbers, std::size_t count,
     throw std::runtime_error(
       "the size of a pixel is not known: the matrices are rigid; set PixelSpacing");
   }
-  if (!stated.empty())
-  {
-    table.Warnings.push_back("the pose in " + DescribeItems("row", stated) +
-      " is not valid by its state; flagged in SliceStatus");
-  }
-  if (!missing.empty())
-  {
-    table.Warnings.push_back("there is no pose in " + DescribeItems("row", missing) +
-      " (numbers are missing or not finite, or all zero); flagged in SliceStatus");
-  }
-  if (!zero.empty())
-  {
-    table.Warnings.push_back("all numbers are 0 in " + DescribeItems("row", zero) +
-      ": taken as a pose. If these rows are empty, write nan: ParaView reads empty cells as 0");
-  }
-  if (!faulty.empty())
-  {
-    table.Warnings.push_back("what is in " + DescribeItems("row", faulty) +
-      " is no pose (the first one: " + firstFault + "); flagged in SliceStatus");
-  }
-  if (!doubtful.empty())
-  {
-    table.Warnings.push_back("the pose in " + DescribeItems("row", doubtful) +
-      " may be wrong (the first one: " + firstDoubt + "); it is used");
-  }
+  table.Warnings = odd.Describe();
   return table;
 }
 

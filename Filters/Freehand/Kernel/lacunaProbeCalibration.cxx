@@ -450,6 +450,19 @@ private:
 // The normal matrix in units that compare: mm, and rotations by what they move at mean distance.
 struct Conditioning
 {
+  // Of the inverse of the normal matrix; symmetric except for units, so that it does not depend on the
+  // signs of eigenvectors.
+  Eigen::MatrixXd GetRoot() const
+  {
+    return this->Lengths.cwiseInverse().asDiagonal() * this->Vectors *
+      this->Values.cwiseSqrt().cwiseInverse().asDiagonal() * this->Vectors.transpose();
+  }
+  Eigen::MatrixXd GetInverseRoot() const
+  {
+    return this->Vectors * this->Values.cwiseSqrt().asDiagonal() * this->Vectors.transpose() *
+      this->Lengths.asDiagonal();
+  }
+
   Eigen::VectorXd Lengths; // mm moved per unit of each unknown
   Eigen::VectorXd Values;  // eigenvalues of the scaled normal matrix, ascending
   Eigen::MatrixXd Vectors; // scaled unknowns
@@ -487,6 +500,70 @@ Conditioning GetConditioning(const Solver& solver, const Solver::Solution& solut
   conditioning.Vectors = eigen.eigenvectors();
   return conditioning;
 }
+
+// What the solution says of the image, without its errors.
+ProbeCalibration MakeResult(
+  const CalibrationModel& model, const std::vector<Solver::Solution>& solutions)
+{
+  const Solver::Solution& best = solutions.front();
+  const CalibrationState& state = best.State;
+  ProbeCalibration result;
+  result.PixelSpacing = { state.Spacing[0], state.Spacing[1] };
+  result.ImageToProbe = ToMatrix4(state.ImageRotation, state.Spacing, state.ImageOrigin);
+  result.TrackerToPhantom =
+    ToMatrix4(state.PhantomRotation, Eigen::Vector2d::Ones(), state.PhantomOrigin);
+  for (std::size_t pick = 0; pick < model.GetNumberOfPicks(); ++pick)
+  {
+    const Eigen::Vector3d point = model.GetPhantomPoint(state, pick);
+    result.PhantomPoints.push_back({ point[0], point[1], point[2] });
+    result.Used.push_back(best.Weights[pick] > 0);
+  }
+  const std::vector<int>& unknowns = model.GetUnknowns();
+  result.Equations = static_cast<std::size_t>(best.Equations);
+  result.Unknowns = unknowns.size();
+  result.Rms = best.GetRms();
+  result.Spread = std::sqrt(best.Square / (best.Equations - static_cast<int>(unknowns.size())));
+  result.RunnerUpRms =
+    solutions.size() > 1 ? solutions[1].GetRms() : std::numeric_limits<double>::infinity();
+  return result;
+}
+
+// Of all unknowns; the result is told how many views there are.
+Eigen::MatrixXd FindCovariance(const CalibrationModel& model, const Solver::Solution& best,
+  const Conditioning& conditioning, const std::vector<std::size_t>& clusters,
+  ProbeCalibration& result)
+{
+  const Eigen::MatrixXd root = conditioning.GetRoot();
+  const ClusteredCovariance clustered =
+    GetClusteredCovariance(model, best.State, best.Weights, clusters, root, result.Spread);
+  result.Views = clustered.Clusters;
+  // In units of the root: what linear equations give with errors as they are in common, and what
+  // they leave out.
+  const Eigen::MatrixXd inverse = conditioning.GetInverseRoot();
+  const Eigen::MatrixXd linear = inverse * clustered.Covariance * inverse.transpose();
+  const double count = static_cast<double>(conditioning.Values.size());
+  const double tempering = std::max(1.0, linear.trace() / (count * result.Spread * result.Spread));
+  const Eigen::MatrixXd bend =
+    root * GetPosteriorRoot(model, best.State, best.Weights, root * result.Spread, tempering);
+  return bend * linear * bend.transpose();
+}
+
+// Those whose error is large for itself and beside the others; the worst first.
+std::vector<CalibrationWeakness> KeepWeak(std::vector<CalibrationWeakness> directions)
+{
+  std::sort(directions.begin(), directions.end(),
+    [](const CalibrationWeakness& a, const CalibrationWeakness& b) { return a.Error > b.Error; });
+  const double median = directions[directions.size() / 2].Error;
+  std::vector<CalibrationWeakness> weak;
+  for (const CalibrationWeakness& direction : directions)
+  {
+    if (direction.Error > WeakError && direction.Error > WeakRatio * median)
+    {
+      weak.push_back(direction);
+    }
+  }
+  return weak;
+}
 }
 
 bool IsZeroAt(CalibrationTarget target, int axis)
@@ -508,28 +585,11 @@ ProbeCalibration ProbeCalibration::Solve(
 {
   Check(picks, options);
   const Solver solver(picks, options);
+  const CalibrationModel& model = solver.GetModel();
   const std::vector<Solver::Solution> solutions = solver.Solve();
   const Solver::Solution& best = solutions.front();
-  const CalibrationState& state = best.State;
-  const std::vector<int>& unknowns = solver.GetModel().GetUnknowns();
-
-  ProbeCalibration result;
-  result.PixelSpacing = { state.Spacing[0], state.Spacing[1] };
-  result.ImageToProbe = ToMatrix4(state.ImageRotation, state.Spacing, state.ImageOrigin);
-  result.TrackerToPhantom =
-    ToMatrix4(state.PhantomRotation, Eigen::Vector2d::Ones(), state.PhantomOrigin);
-  for (std::size_t pick = 0; pick < picks.size(); ++pick)
-  {
-    const Eigen::Vector3d point = solver.GetModel().GetPhantomPoint(state, pick);
-    result.PhantomPoints.push_back({ point[0], point[1], point[2] });
-    result.Used.push_back(best.Weights[pick] > 0);
-  }
-  result.Equations = static_cast<std::size_t>(best.Equations);
-  result.Unknowns = unknowns.size();
-  result.Rms = best.GetRms();
-  result.Spread = std::sqrt(best.Square / (best.Equations - static_cast<int>(unknowns.size())));
-  result.RunnerUpRms =
-    solutions.size() > 1 ? solutions[1].GetRms() : std::numeric_limits<double>::infinity();
+  const std::vector<int>& unknowns = model.GetUnknowns();
+  ProbeCalibration result = MakeResult(model, solutions);
 
   const Conditioning conditioning = GetConditioning(solver, best);
   const Eigen::Index count = conditioning.Values.size();
@@ -537,31 +597,13 @@ ProbeCalibration ProbeCalibration::Solve(
   if (!(conditioning.Values[0] > SingularRatio * largest))
   {
     throw std::invalid_argument("the picks leave open " +
-      DescribeCalibrationWeakness(unknowns, conditioning.Vectors.col(0), picks, state));
+      DescribeCalibrationWeakness(unknowns, conditioning.Vectors.col(0), picks, best.State));
   }
   result.Condition = std::sqrt(largest / conditioning.Values[0]);
 
-  // Covariance of all unknowns, of which the image's are kept.
-  // The root is symmetric but for units, so that it does not depend on the signs of eigenvectors.
-  const Eigen::MatrixXd root = conditioning.Lengths.cwiseInverse().asDiagonal() *
-    conditioning.Vectors * conditioning.Values.cwiseSqrt().cwiseInverse().asDiagonal() *
-    conditioning.Vectors.transpose();
   const std::vector<std::size_t> clusters =
-    FindCalibrationClusters(picks, state, solver.GetFarPixel(), RestSpreads * result.Spread);
-  const ClusteredCovariance clustered =
-    GetClusteredCovariance(solver.GetModel(), state, best.Weights, clusters, root, result.Spread);
-  // In units of the root: what linear equations give with errors as they are in common, and what
-  // they leave out.
-  const Eigen::MatrixXd inverse = conditioning.Vectors *
-    conditioning.Values.cwiseSqrt().asDiagonal() * conditioning.Vectors.transpose() *
-    conditioning.Lengths.asDiagonal();
-  const Eigen::MatrixXd linear = inverse * clustered.Covariance * inverse.transpose();
-  const double tempering =
-    std::max(1.0, linear.trace() / (static_cast<double>(count) * result.Spread * result.Spread));
-  const Eigen::MatrixXd bend = root *
-    GetPosteriorRoot(solver.GetModel(), state, best.Weights, root * result.Spread, tempering);
-  const Eigen::MatrixXd covariance = bend * linear * bend.transpose();
-  result.Views = clustered.Clusters;
+    FindCalibrationClusters(picks, best.State, solver.GetFarPixel(), RestSpreads * result.Spread);
+  const Eigen::MatrixXd covariance = FindCovariance(model, best, conditioning, clusters, result);
   for (std::size_t a = 0; a < unknowns.size(); ++a)
   {
     for (std::size_t b = 0; b < unknowns.size(); ++b)
@@ -591,18 +633,9 @@ ProbeCalibration ProbeCalibration::Solve(
       }
     }
     directions.push_back({ spread * std::sqrt(square / conditioning.Values[v]),
-      DescribeCalibrationWeakness(unknowns, conditioning.Vectors.col(v), picks, state) });
+      DescribeCalibrationWeakness(unknowns, conditioning.Vectors.col(v), picks, best.State) });
   }
-  std::sort(directions.begin(), directions.end(),
-    [](const CalibrationWeakness& a, const CalibrationWeakness& b) { return a.Error > b.Error; });
-  const double median = directions[directions.size() / 2].Error;
-  for (const CalibrationWeakness& direction : directions)
-  {
-    if (direction.Error > WeakError && direction.Error > WeakRatio * median)
-    {
-      result.Weaknesses.push_back(direction);
-    }
-  }
+  result.Weaknesses = KeepWeak(std::move(directions));
   return result;
 }
 

@@ -382,6 +382,30 @@ void FillRaster(const SliceImage& slice, const FootprintAxis& columns, const Foo
   ContinueRaster(pixels, weights, sampled.Width, sampled.Height, columnsOutside, rowsOutside);
 }
 
+// Column, row and distance of a voxel as functions of its indices; throws where numbers cannot say them.
+void SetFunctions(
+  const SliceImage& slice, const VolumeGrid& grid, double footprintScale, SampledSlice& sampled)
+{
+  const Vec3 x = slice.PixelToReference.Column(0);
+  const Vec3 y = slice.PixelToReference.Column(1);
+  const Vec3 origin = slice.PixelToReference.Column(3);
+  const Vec3 area = Cross(x, y);
+  sampled.Normal = Normalized(area);
+  // the basis dual to (x, y, normal): rows and columns need not be at right angles
+  sampled.Column = MakeFunction(grid, 1 / Norm(area) * Cross(y, sampled.Normal), origin);
+  sampled.Row = MakeFunction(grid, 1 / Norm(area) * Cross(sampled.Normal, x), origin);
+  sampled.Distance = MakeFunction(grid, sampled.Normal, origin);
+  for (const AffineFunction* f : { &sampled.Column, &sampled.Row, &sampled.Distance })
+  {
+    if (!std::isfinite(std::max(1.0, footprintScale) * GetVoxelWidth(*f)) || !std::isfinite(f->C))
+    {
+      throw std::invalid_argument(slice.Label +
+        ": a voxel is wider than numbers can say in its pixels; lower OutputSpacing, which is in "
+        "mm");
+    }
+  }
+}
+
 bool HasSampler(ScalarType type, bool doublePrecision)
 {
   return doublePrecision ? type == ScalarType::Float64
@@ -403,28 +427,9 @@ SampledSlice SampleSlice(const SliceImage& slice, const VolumeGrid& grid, PixelS
   {
     throw std::invalid_argument(slice.Label + ": grey levels of this type need double precision");
   }
-  const Vec3 x = slice.PixelToReference.Column(0);
-  const Vec3 y = slice.PixelToReference.Column(1);
-  const Vec3 origin = slice.PixelToReference.Column(3);
-  const Vec3 area = Cross(x, y);
-
   SampledSlice sampled;
   sampled.Label = slice.Label;
-  sampled.Normal = Normalized(area);
-  // the basis dual to (x, y, normal): rows and columns need not be at right angles
-  sampled.Column = MakeFunction(grid, 1 / Norm(area) * Cross(y, sampled.Normal), origin);
-  sampled.Row = MakeFunction(grid, 1 / Norm(area) * Cross(sampled.Normal, x), origin);
-  sampled.Distance = MakeFunction(grid, sampled.Normal, origin);
-  for (const AffineFunction* f : { &sampled.Column, &sampled.Row, &sampled.Distance })
-  {
-    if (!std::isfinite(std::max(1.0, footprintScale) * GetVoxelWidth(*f)) || !std::isfinite(f->C))
-    {
-      throw std::invalid_argument(slice.Label +
-        ": a voxel is wider than numbers can say in its pixels; lower OutputSpacing, which is in "
-        "mm");
-    }
-  }
-
+  SetFunctions(slice, grid, footprintScale, sampled);
   sampled.FootprintHeight = footprintScale * GetVoxelWidth(sampled.Distance);
 
   const bool footprint = sampling == PixelSampling::Footprint;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lacunaScanOutline.h"
 
-#include "lacunaActivityMap.h"
+#include "lacunaPixelSet.h"
 
 #include <algorithm>
 #include <array>
@@ -49,159 +49,6 @@ constexpr int Directions = 60;
 constexpr double HighestConfidence = 0.45;
 constexpr double Pi = 3.14159265358979323846;
 
-std::size_t At(const PixelSet& set, int column, int row)
-{
-  return static_cast<std::size_t>(row) * static_cast<std::size_t>(set.GetWidth()) +
-    static_cast<std::size_t>(column);
-}
-
-template <class Function>
-void ForEach(const PixelSet& set, const Function& f)
-{
-  for (int row = 0; row < set.GetHeight(); ++row)
-  {
-    for (int column = 0; column < set.GetWidth(); ++column)
-    {
-      if (set.Has(column, row))
-      {
-        f(column, row);
-      }
-    }
-  }
-}
-
-template <class Function>
-PixelSet Select(int width, int height, const Function& isIn)
-{
-  PixelSet set(width, height);
-  for (int row = 0; row < height; ++row)
-  {
-    for (int column = 0; column < width; ++column)
-    {
-      if (isIn(column, row))
-      {
-        set.Put(column, row);
-      }
-    }
-  }
-  return set;
-}
-
-// The pixels that have at least this many of the set in the rectangle around them. Negative: all but
-// so many, of those in the image.
-PixelSet Gather(const PixelSet& set, int radiusX, int radiusY, int needed)
-{
-  const int width = set.GetWidth(), height = set.GetHeight();
-  const auto stride = static_cast<std::size_t>(width) + 1;
-  std::vector<int> sums(stride * (static_cast<std::size_t>(height) + 1), 0);
-  const auto sum = [&](int column, int row) -> int&
-  { return sums[static_cast<std::size_t>(row) * stride + static_cast<std::size_t>(column)]; };
-  for (int row = 0; row < height; ++row)
-  {
-    int line = 0;
-    for (int column = 0; column < width; ++column)
-    {
-      line += set.Has(column, row) ? 1 : 0;
-      sum(column + 1, row + 1) = sum(column + 1, row) + line;
-    }
-  }
-  return Select(width, height,
-    [&](int column, int row)
-    {
-      const int left = std::max(0, column - radiusX), right = std::min(width, column + radiusX + 1);
-      const int top = std::max(0, row - radiusY), bottom = std::min(height, row + radiusY + 1);
-      const int count = sum(right, bottom) - sum(left, bottom) - sum(right, top) + sum(left, top);
-      return count >= (needed > 0 ? needed : (right - left) * (bottom - top) + needed);
-    });
-}
-
-PixelSet Grow(const PixelSet& set, int radiusX, int radiusY)
-{
-  return Gather(set, radiusX, radiusY, 1);
-}
-
-// A box of pixels: first column and row, and those behind the last.
-struct Box
-{
-  int Left = std::numeric_limits<int>::max();
-  int Top = std::numeric_limits<int>::max();
-  int Right = 0;
-  int Bottom = 0;
-
-  void Put(int column, int row)
-  {
-    this->Left = std::min(this->Left, column);
-    this->Top = std::min(this->Top, row);
-    this->Right = std::max(this->Right, column + 1);
-    this->Bottom = std::max(this->Bottom, row + 1);
-  }
-  bool Has(int column, int row) const
-  {
-    return column >= this->Left && column < this->Right && row >= this->Top && row < this->Bottom;
-  }
-  int GetWidth() const { return this->Right - this->Left; }
-  int GetHeight() const { return this->Bottom - this->Top; }
-  double GetArea() const { return double(this->GetWidth()) * this->GetHeight(); }
-};
-
-struct Part
-{
-  Box Bounds;
-  std::vector<std::pair<int, int>> Pixels;
-
-  template <class Function>
-  double GetFraction(const Function& isSo) const
-  {
-    const auto count = std::count_if(this->Pixels.begin(), this->Pixels.end(),
-      [&](const std::pair<int, int>& pixel) { return isSo(pixel.first, pixel.second); });
-    return static_cast<double>(count) / static_cast<double>(this->Pixels.size());
-  }
-};
-
-// Connected by edges or corners.
-std::vector<Part> FindParts(const PixelSet& set)
-{
-  std::vector<Part> parts;
-  PixelSet seen(set.GetWidth(), set.GetHeight());
-  ForEach(set,
-    [&](int column, int row)
-    {
-      if (seen.Has(column, row))
-      {
-        return;
-      }
-      Part part;
-      part.Pixels.emplace_back(column, row);
-      seen.Put(column, row);
-      for (std::size_t n = 0; n < part.Pixels.size(); ++n)
-      {
-        const auto [x, y] = part.Pixels[n];
-        part.Bounds.Put(x, y);
-        for (int ny = std::max(0, y - 1); ny <= std::min(set.GetHeight() - 1, y + 1); ++ny)
-        {
-          for (int nx = std::max(0, x - 1); nx <= std::min(set.GetWidth() - 1, x + 1); ++nx)
-          {
-            if (set.Has(nx, ny) && !seen.Has(nx, ny))
-            {
-              seen.Put(nx, ny);
-              part.Pixels.emplace_back(nx, ny);
-            }
-          }
-        }
-      }
-      parts.push_back(std::move(part));
-    });
-  return parts;
-}
-
-void Put(PixelSet& set, const Part& part)
-{
-  for (const auto& [column, row] : part.Pixels)
-  {
-    set.Put(column, row);
-  }
-}
-
 double GetQuantile(std::vector<float> values, double fraction)
 {
   if (values.empty())
@@ -235,6 +82,11 @@ double GetMostFrequent(const std::vector<float>& levels)
 // What the slices show of a pixel, above the background.
 struct Screen
 {
+  std::size_t At(int column, int row) const
+  {
+    return static_cast<std::size_t>(row) * static_cast<std::size_t>(this->Width) +
+      static_cast<std::size_t>(column);
+  }
   int Width, Height;
   std::vector<float> Lowest, Highest, Ranges; ///< Lowest: second lowest from 4 slices on
   double Top = 0;                             ///< the largest of Highest
@@ -244,7 +96,7 @@ struct Screen
 struct StillThings
 {
   PixelSet Furniture, Others;
-  std::vector<Box> Words;
+  std::vector<PixelBox> Words;
   double LetterLevel = 0; ///< 0: there are too few
   double Flicker = 0;
 };
@@ -252,28 +104,25 @@ struct StillThings
 StillThings FindStillThings(const Screen& screen, int letter)
 {
   const int width = screen.Width, height = screen.Height;
-  const PixelSet still = Select(width, height,
+  const PixelSet still = PixelSet::Select(width, height,
     [&](int column, int row)
-    {
-      return screen.Lowest[static_cast<std::size_t>(row) * static_cast<std::size_t>(width) +
-               static_cast<std::size_t>(column)] > Stillness * screen.Top;
-    });
+    { return screen.Lowest[screen.At(column, row)] > Stillness * screen.Top; });
   constexpr int stroke = StrokeRadius;
-  const PixelSet thick = Grow(Gather(still, stroke, stroke, 0), stroke, stroke);
+  const PixelSet thick = still.Gathered(stroke, stroke, 0).Grown(stroke, stroke);
   StillThings found{ PixelSet(width, height), PixelSet(width, height), {}, 0, 0 };
-  for (const Part& part : FindParts(still))
+  for (const PixelPart& part : still.GetParts())
   {
     const double thickness = part.GetFraction([&](int x, int y) { return thick.Has(x, y); });
-    const Box& box = part.Bounds;
+    const PixelBox& box = part.Bounds;
     const auto size = static_cast<double>(part.Pixels.size());
     const bool isBox = size > FilledBox * box.GetArea() && size < LargestBox * width * height;
     const int smaller = std::min(box.GetWidth(), box.GetHeight());
     const int larger = std::max(box.GetWidth(), box.GetHeight());
     const bool isFurniture = isBox || larger <= letter || thickness < ThickLine ||
       (smaller <= letter && thickness < ThickWord);
-    Put(isFurniture ? found.Furniture : found.Others, part);
+    (isFurniture ? found.Furniture : found.Others).Put(part);
   }
-  for (const Part& word : FindParts(Grow(found.Furniture, 2, 0)))
+  for (const PixelPart& word : found.Furniture.Grown(2, 0).GetParts())
   {
     if (word.Bounds.GetHeight() >= SmallestLetter && word.Bounds.GetHeight() <= letter)
     {
@@ -281,10 +130,10 @@ StillThings FindStillThings(const Screen& screen, int letter)
     }
   }
   std::vector<float> levels, ranges;
-  ForEach(found.Furniture,
+  found.Furniture.ForEach(
     [&](int column, int row)
     {
-      const std::size_t i = At(found.Furniture, column, row);
+      const std::size_t i = screen.At(column, row);
       levels.push_back(screen.Lowest[i]);
       ranges.push_back(screen.Ranges[i]);
     });
@@ -297,16 +146,16 @@ StillThings FindStillThings(const Screen& screen, int letter)
 }
 
 // A figure of a clock, or several.
-bool IsText(const Part& part, const StillThings& still, const Screen& screen, int letter)
+bool IsText(const PixelPart& part, const StillThings& still, const Screen& screen, int letter)
 {
-  const Box& box = part.Bounds;
+  const PixelBox& box = part.Bounds;
   if (box.GetHeight() > letter || box.GetWidth() > 6 * letter)
   {
     return false;
   }
   const bool isInLine = box.GetWidth() <= 3 * letter &&
     std::any_of(still.Words.begin(), still.Words.end(),
-      [&](const Box& word)
+      [&](const PixelBox& word)
       {
         return box.Top >= word.Top - 2 && box.Bottom <= word.Bottom + 2 &&
           std::max(box.Left - word.Right, word.Left - box.Right) <= letter;
@@ -316,34 +165,10 @@ bool IsText(const Part& part, const StillThings& still, const Screen& screen, in
     return true;
   }
   const auto isBright = [&](int column, int row)
-  {
-    return screen.Highest[static_cast<std::size_t>(row) * static_cast<std::size_t>(screen.Width) +
-             static_cast<std::size_t>(column)] >= BrightAsLetters * still.LetterLevel;
-  };
+  { return screen.Highest[screen.At(column, row)] >= BrightAsLetters * still.LetterLevel; };
   return still.LetterLevel > 0 && box.GetHeight() >= SmallestLetter &&
     static_cast<double>(part.Pixels.size()) >= FilledFigure * box.GetArea() &&
     part.GetFraction(isBright) >= LeastBright;
-}
-
-Box GetBounds(const PixelSet& set)
-{
-  Box box;
-  ForEach(set, [&](int column, int row) { box.Put(column, row); });
-  return box;
-}
-
-// The outermost pixels of each row, and of each column.
-std::array<std::vector<Box>, 2> GetLines(const PixelSet& set)
-{
-  std::vector<Box> rows(static_cast<std::size_t>(set.GetHeight()));
-  std::vector<Box> columns(static_cast<std::size_t>(set.GetWidth()));
-  ForEach(set,
-    [&](int column, int row)
-    {
-      rows[static_cast<std::size_t>(row)].Put(column, row);
-      columns[static_cast<std::size_t>(column)].Put(column, row);
-    });
-  return { std::move(rows), std::move(columns) };
 }
 
 // What changes, without what belongs to the screen.
@@ -353,31 +178,32 @@ PixelSet FindMoving(const Screen& screen)
   const int letter = static_cast<int>(LetterHeight * std::max(width, height));
   const StillThings still = FindStillThings(screen, letter);
   const double least = std::max(still.Flicker, NoiseFactor * GetQuantile(screen.Ranges, 0.25));
-  const PixelSet around = Grow(still.Furniture, FlickerReach, FlickerReach);
-  const PixelSet changing = Select(width, height,
+  const PixelSet around = still.Furniture.Grown(FlickerReach, FlickerReach);
+  const PixelSet changing = PixelSet::Select(width, height,
     [&](int column, int row)
-    { return screen.Ranges[At(around, column, row)] > least && !around.Has(column, row); });
+    { return screen.Ranges[screen.At(column, row)] > least && !around.Has(column, row); });
   const bool isClean = !(least > 0) && !(still.LetterLevel > 0);
-  const PixelSet cores = Gather(changing, 1, 1, isClean ? PixelsNeeded : PixelsNeededOnScreens);
-  const PixelSet near =
-    Grow(Select(width, height, [&](int x, int y) { return cores.Has(x, y) && changing.Has(x, y); }),
-      1, 1);
-  const PixelSet dense =
-    Select(width, height, [&](int x, int y) { return near.Has(x, y) && changing.Has(x, y); });
+  const PixelSet cores = changing.Gathered(1, 1, isClean ? PixelsNeeded : PixelsNeededOnScreens);
+  const auto getChanging = [&](const PixelSet& set)
+  {
+    return PixelSet::Select(
+      width, height, [&](int x, int y) { return set.Has(x, y) && changing.Has(x, y); });
+  };
+  const PixelSet dense = getChanging(getChanging(cores).Grown(1, 1));
   PixelSet moving(width, height);
-  for (const Part& part : FindParts(dense))
+  for (const PixelPart& part : dense.GetParts())
   {
     if (!IsText(part, still, screen, letter))
     {
-      Put(moving, part);
+      moving.Put(part);
     }
   }
-  const Box box = GetBounds(moving);
-  for (const Part& part : FindParts(still.Others))
+  const PixelBox box = moving.GetBounds();
+  for (const PixelPart& part : still.Others.GetParts())
   {
     if (part.GetFraction([&](int x, int y) { return box.Has(x, y); }) >= 0.5)
     {
-      Put(moving, part);
+      moving.Put(part);
     }
   }
   return moving;
@@ -427,12 +253,12 @@ public:
   WedgeSearch(const PixelSet& set, double aspect)
     : Set(set)
     , Aspect(aspect)
-    , Bounds(GetBounds(set))
+    , Bounds(set.GetBounds())
   {
     // the outermost pixels of rows and columns say all but the near radius at the sides
-    for (const std::vector<Box>& lines : GetLines(set))
+    for (const std::vector<PixelBox>& lines : set.GetLines())
     {
-      for (const Box& line : lines)
+      for (const PixelBox& line : lines)
       {
         if (line.Right > 0)
         {
@@ -514,13 +340,13 @@ public:
         return a.first < b.first;
       })->second;
     std::vector<Vec2> all;
-    ForEach(this->Set, [&](int column, int row) { all.push_back(this->GetPoint(column, row)); });
+    this->Set.ForEach([&](int column, int row) { all.push_back(this->GetPoint(column, row)); });
     return Enclose(all, origin);
   }
 
   const PixelSet& Set;
   double Aspect;
-  Box Bounds;
+  PixelBox Bounds;
 
 private:
   std::vector<Vec2> Outermost, Samples;
@@ -553,7 +379,7 @@ Proposal TryWedge(const PixelSet& moving, double aspect)
   };
   std::array<Beam, Directions> beams;
   const double opening = wedge.Angles[1] - wedge.Angles[0];
-  ForEach(moving,
+  moving.ForEach(
     [&](int column, int row)
     {
       const Vec2 point = search.GetPoint(column, row);
@@ -565,7 +391,7 @@ Proposal TryWedge(const PixelSet& moving, double aspect)
       beam.Nearest = std::min(beam.Nearest, radius);
       beam.Farthest = std::max(beam.Farthest, radius);
     });
-  const Box& box = search.Bounds;
+  const PixelBox& box = search.Bounds;
   int free = 0, confirmed = 0;
   double all = 0, between = 0;
   for (std::size_t d = 0; d < beams.size(); ++d)
@@ -599,15 +425,15 @@ Proposal TryWedge(const PixelSet& moving, double aspect)
 }
 
 // Part of a box that lies between the outermost pixels of rows, or of columns.
-double GetBetween(const PixelSet& set, const Box& box)
+double GetBetween(const PixelSet& set, const PixelBox& box)
 {
-  const auto [rows, columns] = GetLines(set);
+  const auto [rows, columns] = set.GetLines();
   double inRows = 0, inColumns = 0;
-  for (const Box& row : rows)
+  for (const PixelBox& row : rows)
   {
     inRows += row.Right > 0 ? row.GetWidth() : 0;
   }
-  for (const Box& column : columns)
+  for (const PixelBox& column : columns)
   {
     inColumns += column.Right > 0 ? column.GetHeight() : 0;
   }
@@ -724,7 +550,7 @@ ScanRegion ScanOutline::Propose(const Vec2& pixelSpacing) const
                            : "besides texts nothing changes";
     return region;
   }
-  const Box box = GetBounds(moving);
+  const PixelBox box = moving.GetBounds();
   if (box.GetArea() < SmallestBox * size)
   {
     region.Text =

@@ -358,6 +358,115 @@ bool IsSweep(const std::vector<SpotSlice>& slices, double reach)
   }
   return 2 * near > steps;
 }
+
+// Ways through slices, one spot or none in each; the cheapest is the track.
+class Ways
+{
+public:
+  Ways(const std::vector<SpotSlice>& slices, double reach)
+    : Slices(slices)
+    , Reach(reach)
+    , Usual(GetUsualLevel(slices))
+    , Jump(IsSweep(slices, reach) ? CostOfJumpInSweep : CostOfJump)
+    , Skipped(slices.size() + 1, 0)
+  {
+    for (std::size_t k = 0; k < slices.size(); ++k)
+    {
+      this->Skipped[k + 1] = this->Skipped[k] + (slices[k].Known ? Forbidden : CostOfNone);
+    }
+    for (std::size_t k = 0; k < slices.size(); ++k)
+    {
+      this->GoOn(k);
+    }
+    this->Ended.reset();
+    this->End(0, this->Nodes.size());
+  }
+
+  std::vector<std::optional<Spot>> GetCheapest() const
+  {
+    std::vector<std::optional<Spot>> track(this->Slices.size());
+    // none at all costs 0 more than leaving out all slices
+    for (std::optional<std::size_t> n = this->EndedCost < 0 ? this->Ended : std::nullopt; n;
+         n = this->Nodes[*n].Before)
+    {
+      track[this->Nodes[*n].Slice] = this->Nodes[*n].Choice;
+    }
+    return track;
+  }
+
+private:
+  // Into slice k.
+  void GoOn(std::size_t k)
+  {
+    this->Begins.push_back(this->Nodes.size());
+    if (k > LongestGap)
+    {
+      this->End(this->Begins[k - LongestGap - 1], this->Begins[k - LongestGap]);
+    }
+    if (this->Slices[k].Known)
+    {
+      this->Add({ *this->Slices[k].Known, 0, 1 }, k);
+      return;
+    }
+    for (Spot spot : this->Slices[k].Spots)
+    {
+      spot.Score *= std::min(1.0, spot.Level / (UsualPart * this->Usual));
+      this->Add(spot, k);
+    }
+  }
+
+  // The best way to a spot of slice k.
+  void Add(const Spot& spot, std::size_t k)
+  {
+    Node node{ spot, 0, {}, k };
+    double best = this->Skipped[k]; // the first of all
+    if (this->Ended && this->EndedCost + this->Skipped[k] + CostOfJump < best)
+    {
+      best = this->EndedCost + this->Skipped[k] + CostOfJump;
+      node.Before = this->Ended;
+    }
+    const std::size_t first = this->Begins[k > LongestGap ? k - LongestGap : 0];
+    for (std::size_t n = first; n < this->Begins[k]; ++n)
+    {
+      const Node& before = this->Nodes[n];
+      const double step = std::min(
+        1.0, GetSteps(before.Choice, spot, this->Reach * static_cast<double>(k - before.Slice)));
+      const double cost =
+        before.Cost + this->Skipped[k] - this->Skipped[before.Slice + 1] + this->Jump * step * step;
+      if (cost < best)
+      {
+        best = cost;
+        node.Before = n;
+      }
+    }
+    node.Cost = best + 1 - spot.Score;
+    this->Nodes.push_back(node);
+  }
+
+  // Remembers the best of these nodes, and of those before, to end at.
+  void End(std::size_t first, std::size_t last)
+  {
+    for (std::size_t n = first; n < last; ++n)
+    {
+      const double cost = this->Nodes[n].Cost - this->Skipped[this->Nodes[n].Slice + 1];
+      if (!this->Ended || cost < this->EndedCost)
+      {
+        this->Ended = n;
+        this->EndedCost = cost;
+      }
+    }
+  }
+
+  const std::vector<SpotSlice>& Slices;
+  double Reach;
+  double Usual;
+  double Jump;
+  std::vector<double> Skipped; // what it costs to leave out all slices before one
+  std::vector<Node> Nodes;
+  std::vector<std::size_t> Begins;  // of each slice in Nodes
+  std::optional<std::size_t> Ended; // the best way that ended long before
+  double EndedCost = 0;             // of it, less what it costs to leave out all slices
+};
 }
 
 std::vector<std::optional<Spot>> TrackSpots(const std::vector<SpotSlice>& slices, double reach)
@@ -366,84 +475,6 @@ std::vector<std::optional<Spot>> TrackSpots(const std::vector<SpotSlice>& slices
   {
     throw std::invalid_argument("the reach of a step must be above 0 pixels");
   }
-  const double usual = GetUsualLevel(slices);
-  const double jump = IsSweep(slices, reach) ? CostOfJumpInSweep : CostOfJump;
-  // what it costs to leave out all slices before one
-  std::vector<double> skipped(slices.size() + 1, 0);
-  for (std::size_t k = 0; k < slices.size(); ++k)
-  {
-    skipped[k + 1] = skipped[k] + (slices[k].Known ? Forbidden : CostOfNone);
-  }
-  std::vector<Node> nodes;
-  std::vector<std::size_t> begins; // of each slice in nodes
-  // the best way that ended long before, with what it costs to leave out all slices
-  double endedCost = 0;
-  std::optional<std::size_t> ended;
-  const auto end = [&](std::size_t first, std::size_t last)
-  {
-    for (std::size_t n = first; n < last; ++n)
-    {
-      const double cost = nodes[n].Cost - skipped[nodes[n].Slice + 1];
-      if (!ended || cost < endedCost)
-      {
-        ended = n;
-        endedCost = cost;
-      }
-    }
-  };
-  for (std::size_t k = 0; k < slices.size(); ++k)
-  {
-    begins.push_back(nodes.size());
-    if (k > LongestGap)
-    {
-      end(begins[k - LongestGap - 1], begins[k - LongestGap]);
-    }
-    std::vector<Spot> choices = slices[k].Spots;
-    if (slices[k].Known)
-    {
-      choices = { { *slices[k].Known, 0, 1 } };
-    }
-    else
-    {
-      for (Spot& spot : choices)
-      {
-        spot.Score *= std::min(1.0, spot.Level / (UsualPart * usual));
-      }
-    }
-    for (const Spot& spot : choices)
-    {
-      Node node{ spot, 0, {}, k };
-      double best = skipped[k]; // the first of all
-      if (ended && endedCost + skipped[k] + CostOfJump < best)
-      {
-        best = endedCost + skipped[k] + CostOfJump;
-        node.Before = ended;
-      }
-      const std::size_t first = begins[k > LongestGap ? k - LongestGap : 0];
-      for (std::size_t n = first; n < begins[k]; ++n)
-      {
-        const double step = std::min(
-          1.0, GetSteps(nodes[n].Choice, spot, reach * static_cast<double>(k - nodes[n].Slice)));
-        const double cost =
-          nodes[n].Cost + skipped[k] - skipped[nodes[n].Slice + 1] + jump * step * step;
-        if (cost < best)
-        {
-          best = cost;
-          node.Before = n;
-        }
-      }
-      node.Cost = best + 1 - spot.Score;
-      nodes.push_back(node);
-    }
-  }
-  ended.reset();
-  end(0, nodes.size());
-  std::vector<std::optional<Spot>> track(slices.size());
-  // none at all costs 0 more than leaving out all slices
-  for (std::optional<std::size_t> n = endedCost < 0 ? ended : std::nullopt; n; n = nodes[*n].Before)
-  {
-    track[nodes[*n].Slice] = nodes[*n].Choice;
-  }
-  return track;
+  return Ways(slices, reach).GetCheapest();
 }
 }

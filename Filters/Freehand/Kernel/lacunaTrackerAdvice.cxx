@@ -58,6 +58,45 @@ std::optional<double> FindGoodRange(const TrackerSelfTest& test)
   }
   return anyGood && 2 * bad > beyond ? range : std::nullopt;
 }
+
+// What to do about errors that are larger than specified (off), or to see whether they come back.
+void AdviseOnErrors(const TrackerSelfTest& test, bool off, std::vector<std::string>& advice)
+{
+  const std::optional<double> range = FindGoodRange(test);
+  if (range)
+  {
+    advice.push_back(Format("errors are as specified up to %.0f mm from the transmitter and larger "
+                            "beyond: bring the transmitter nearer to where you scan",
+      *range));
+  }
+  else if (off)
+  {
+    advice.push_back(
+      "look for metal near that place and near the transmitter (bed, trolley, table legs, scanner, "
+      "reinforced floor) and for power cables and screens; move it or the transmitter away and "
+      "test again");
+  }
+  if (std::isnan(test.Repeatability))
+  {
+    advice.push_back("no place was visited twice: go back to some of them, so that a warp can be "
+                     "told from noise");
+  }
+  else if (off && test.Warp > ComesBack * test.Repeatability)
+  {
+    advice.push_back(
+      Format("the deviations come back to %.1f mm where the receivers do: a warp and "
+             "no noise, so short sweeps in one place suffer less than what is put "
+             "together of many",
+        test.Repeatability));
+  }
+  else if (off)
+  {
+    advice.push_back(Format(
+      "the deviations differ by %.1f mm where the receivers come back: hold them still while "
+      "measuring, and check that they cannot move on their support",
+      test.Repeatability));
+  }
+}
 }
 
 std::vector<std::string> TrackerSelfTest::GetAdvice() const
@@ -84,41 +123,14 @@ std::vector<std::string> TrackerSelfTest::GetAdvice() const
                        : wild ? "the tracker is as specified but in some places: "
                               : "the tracker is as specified: ") +
     figures);
+  AdviseOnErrors(*this, off, advice);
+  this->AdviseOnMeasuring(advice);
+  return advice;
+}
 
-  const std::optional<double> range = FindGoodRange(*this);
-  if (range)
-  {
-    advice.push_back(Format("errors are as specified up to %.0f mm from the transmitter and larger "
-                            "beyond: bring the transmitter nearer to where you scan",
-      *range));
-  }
-  else if (off)
-  {
-    advice.push_back(
-      "look for metal near that place and near the transmitter (bed, trolley, table legs, scanner, "
-      "reinforced floor) and for power cables and screens; move it or the transmitter away and "
-      "test again");
-  }
-  if (std::isnan(this->Repeatability))
-  {
-    advice.push_back("no place was visited twice: go back to some of them, so that a warp can be "
-                     "told from noise");
-  }
-  else if (off && this->Warp > ComesBack * this->Repeatability)
-  {
-    advice.push_back(
-      Format("the deviations come back to %.1f mm where the receivers do: a warp and "
-             "no noise, so short sweeps in one place suffer less than what is put "
-             "together of many",
-        this->Repeatability));
-  }
-  else if (off)
-  {
-    advice.push_back(Format(
-      "the deviations differ by %.1f mm where the receivers come back: hold them still while "
-      "measuring, and check that they cannot move on their support",
-      this->Repeatability));
-  }
+// What the measurement itself lacks.
+void TrackerSelfTest::AdviseOnMeasuring(std::vector<std::string>& advice) const
+{
   std::size_t far = 0;
   for (const Sample& sample : this->Samples)
   {
@@ -150,6 +162,5 @@ std::vector<std::string> TrackerSelfTest::GetAdvice() const
                             "volume in which you scan, and turn them",
       this->Extent));
   }
-  return advice;
 }
 }

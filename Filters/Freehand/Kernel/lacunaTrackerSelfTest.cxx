@@ -305,6 +305,87 @@ TrackerSelfTest::Errors GetExpected(const TrackerAccuracy& accuracy, double sepa
     std::sqrt(2 * accuracy.Translation * accuracy.Translation + 2.0 / 3 * swing * swing),
     std::sqrt(2.0) * accuracy.Angle };
 }
+
+// The median of the transforms from the second receiver to the first; each place counts once.
+struct MedianFit
+{
+  MedianFit(const std::vector<ReceiverPair>& pairs, const TrackerSelfTestOptions& options)
+    : Places(GetFirst(pairs), options.RevisitDistance, options.RevisitAngle)
+  {
+    for (const ReceiverPair& pair : pairs)
+    {
+      this->Transforms.push_back(pair.First.Inverse() * pair.Second);
+    }
+    std::vector<std::size_t> counts(this->Places.Middles.size(), 0);
+    for (const std::size_t place : this->Places.Place)
+    {
+      ++counts[place];
+    }
+    for (const std::size_t place : this->Places.Place)
+    {
+      this->Weights.push_back(1 / static_cast<double>(counts[place]));
+    }
+    this->SecondToFirst = FindMedian(this->Transforms, this->Weights);
+  }
+
+  static std::vector<Matrix4> GetFirst(const std::vector<ReceiverPair>& pairs)
+  {
+    std::vector<Matrix4> poses;
+    for (const ReceiverPair& pair : pairs)
+    {
+      poses.push_back(pair.First);
+    }
+    return poses;
+  }
+
+  ReceiverPlaces Places;
+  std::vector<Matrix4> Transforms; // of the pairs
+  std::vector<double> Weights;     // of the pairs
+  Matrix4 SecondToFirst;
+};
+
+// Sums and extremes over the samples.
+class Summary
+{
+public:
+  void Include(const TrackerSelfTest::Sample& sample, double separation, double weight)
+  {
+    this->Nearest = std::min(this->Nearest, separation);
+    this->Farthest = std::max(this->Farthest, separation);
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      this->Low[axis] = std::min(this->Low[axis], sample.Middle[axis]);
+      this->High[axis] = std::max(this->High[axis], sample.Middle[axis]);
+    }
+    Add(this->Squares, sample, weight);
+    const auto step = static_cast<std::int64_t>(std::floor(sample.Distance / Step));
+    auto& [row, weights] = this->ByDistance[step];
+    row.From = Step * static_cast<double>(step);
+    row.To = row.From + Step;
+    ++row.Samples;
+    Add(row.Rms, sample, weight);
+    weights += weight;
+  }
+
+  void Set(TrackerSelfTest& result)
+  {
+    result.Rms = Root(this->Squares, static_cast<double>(result.Places));
+    result.SeparationRange = this->Farthest - this->Nearest;
+    result.Extent = Norm(this->High - this->Low);
+    for (auto& [step, found] : this->ByDistance)
+    {
+      found.first.Rms = Root(found.first.Rms, found.second);
+      result.ByDistance.push_back(found.first);
+    }
+  }
+
+private:
+  static constexpr double Infinity = std::numeric_limits<double>::infinity();
+  TrackerSelfTest::Errors Squares;
+  std::map<std::int64_t, std::pair<TrackerSelfTest::DistanceRow, double>> ByDistance;
+  double Nearest = Infinity, Farthest = 0;
+  Vec3 Low{ Infinity, Infinity, Infinity }, High{ -Infinity, -Infinity, -Infinity };
+};
 }
 
 TrackerSelfTest TrackerSelfTest::Solve(
@@ -315,11 +396,7 @@ TrackerSelfTest TrackerSelfTest::Solve(
   result.Options = options;
   std::vector<ReceiverPair> used = SelectSlow(pairs, options.SpeedLimit);
   result.TooFast = pairs.size() - used.size();
-
-  std::vector<Matrix4> poses, transforms;
-  std::vector<double> weights;
-  std::vector<std::size_t> counts;
-  const auto solve = [&]
+  const auto fitMedian = [&]
   {
     if (used.size() < FewestPairs)
     {
@@ -329,47 +406,24 @@ TrackerSelfTest TrackerSelfTest::Solve(
         " in the other hemisphere); at least " + std::to_string(FewestPairs) +
         " are needed, better some hundreds all over the working volume");
     }
-    poses.clear();
-    transforms.clear();
-    for (const ReceiverPair& pair : used)
-    {
-      poses.push_back(pair.First);
-      transforms.push_back(pair.First.Inverse() * pair.Second);
-    }
-    ReceiverPlaces places(poses, options.RevisitDistance, options.RevisitAngle);
-    counts.assign(places.Middles.size(), 0);
-    for (const std::size_t place : places.Place)
-    {
-      ++counts[place];
-    }
-    weights.clear();
-    for (const std::size_t place : places.Place)
-    {
-      weights.push_back(1 / static_cast<double>(counts[place]));
-    }
-    result.SecondToFirst = FindMedian(transforms, weights);
-    return places;
+    return MedianFit(used, options);
   };
-  ReceiverPlaces places = solve();
+  MedianFit fit = fitMedian();
   const std::size_t before = used.size();
   used.erase(
     std::remove_if(used.begin(), used.end(),
-      [&](const ReceiverPair& pair) { return IsOtherHemisphere(pair, result.SecondToFirst); }),
+      [&](const ReceiverPair& pair) { return IsOtherHemisphere(pair, fit.SecondToFirst); }),
     used.end());
   if (used.size() < before)
   {
     result.OtherHemisphere = before - used.size();
-    places = solve();
+    fit = fitMedian();
   }
+  result.SecondToFirst = fit.SecondToFirst;
   result.Separation = Norm(result.SecondToFirst.Column(3));
   result.Expected = GetExpected(options.Accuracy, result.Separation);
-  result.Places = places.Middles.size();
-
-  // of all samples
-  Errors squares;
-  std::map<std::int64_t, std::pair<DistanceRow, double>> byDistance;
-  double nearest = std::numeric_limits<double>::infinity(), farthest = 0;
-  Vec3 low{ 0, 0, 0 }, high{ 0, 0, 0 };
+  result.Places = fit.Places.Middles.size();
+  Summary summary;
   for (std::size_t i = 0; i < used.size(); ++i)
   {
     const Vec3 first = used[i].First.Column(3), second = used[i].Second.Column(3);
@@ -379,44 +433,27 @@ TrackerSelfTest TrackerSelfTest::Solve(
     sample.Deviation = second - used[i].First.Point(result.SecondToFirst.Column(3));
     const double separation = Norm(second - first);
     sample.SeparationError = separation - result.Separation;
-    sample.AngleError = GetTurn(transforms[i], result.SecondToFirst);
+    sample.AngleError = GetTurn(fit.Transforms[i], result.SecondToFirst);
     sample.Distance = std::max(Norm(first), Norm(second));
-    sample.Place = places.Place[i];
-    nearest = std::min(nearest, separation);
-    farthest = std::max(farthest, separation);
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      low[axis] = i == 0 ? sample.Middle[axis] : std::min(low[axis], sample.Middle[axis]);
-      high[axis] = i == 0 ? sample.Middle[axis] : std::max(high[axis], sample.Middle[axis]);
-    }
-    Add(squares, sample, weights[i]);
-    const auto step = static_cast<std::int64_t>(std::floor(sample.Distance / Step));
-    auto& [row, weight] = byDistance[step];
-    row.From = Step * static_cast<double>(step);
-    row.To = row.From + Step;
-    ++row.Samples;
-    Add(row.Rms, sample, weights[i]);
-    weight += weights[i];
-    result.Largest.Separation =
-      std::max(result.Largest.Separation, std::abs(sample.SeparationError));
-    result.Largest.Angle = std::max(result.Largest.Angle, sample.AngleError);
-    if (Norm(sample.Deviation) > result.Largest.Position)
-    {
-      result.Largest.Position = Norm(sample.Deviation);
-      result.Worst = i;
-    }
-    result.Samples.push_back(sample);
+    sample.Place = fit.Places.Place[i];
+    summary.Include(sample, separation, fit.Weights[i]);
+    result.AddSample(sample);
   }
-  result.Rms = Root(squares, static_cast<double>(result.Places));
-  result.SeparationRange = farthest - nearest;
-  result.Extent = Norm(high - low);
-  for (auto& [step, found] : byDistance)
-  {
-    found.first.Rms = Root(found.first.Rms, found.second);
-    result.ByDistance.push_back(found.first);
-  }
-  result.CompareVisits(places.Visit, places.Visited);
+  summary.Set(result);
+  result.CompareVisits(fit.Places.Visit, fit.Places.Visited);
   return result;
+}
+
+void TrackerSelfTest::AddSample(const Sample& sample)
+{
+  this->Largest.Separation = std::max(this->Largest.Separation, std::abs(sample.SeparationError));
+  this->Largest.Angle = std::max(this->Largest.Angle, sample.AngleError);
+  if (Norm(sample.Deviation) > this->Largest.Position)
+  {
+    this->Largest.Position = Norm(sample.Deviation);
+    this->Worst = this->Samples.size();
+  }
+  this->Samples.push_back(sample);
 }
 
 // What is noise, what comes back, and what changes from place to place.

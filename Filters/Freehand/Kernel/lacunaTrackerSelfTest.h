@@ -130,6 +130,8 @@ public:
   std::vector<std::string> GetAdvice() const;
 
 private:
+  void AddSample(const Sample& sample);
+  void AdviseOnMeasuring(std::vector<std::string>& advice) const;
   void CompareVisits(
     const std::vector<std::size_t>& visits, const std::vector<std::size_t>& placesOfVisits);
 

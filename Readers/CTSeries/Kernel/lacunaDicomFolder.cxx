@@ -137,8 +137,29 @@ void DicomFolder::Scan(const std::string& path, Execution& execution)
     folder = folder.has_parent_path() ? folder.parent_path() : fs::path(".");
   }
 
+  std::map<std::string, Entry> files = this->List(folder, !single);
+  ReadNew(files, execution);
+  this->Files = std::move(files);
+  this->Gather();
+  if (single)
+  {
+    const std::string name = fs::path(path).filename().string();
+    for (const auto& file : this->Files)
+    {
+      if (fs::path(file.first).filename() == name)
+      {
+        this->Opened = file.first;
+      }
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
+std::map<std::string, DicomFolder::Entry> DicomFolder::List(
+  const std::string& folder, bool deep) const
+{
   std::map<std::string, Entry> files;
-  ForEachFile(folder, !single,
+  ForEachFile(folder, deep,
     [&](const fs::directory_entry& file)
     {
       Entry entry;
@@ -155,10 +176,16 @@ void DicomFolder::Scan(const std::string& path, Execution& execution)
       if (files.size() > MostFiles)
       {
         throw std::runtime_error(
-          folder.string() + ": holds more than 200000 files; open the folder of one patient");
+          folder + ": holds more than 200000 files; open the folder of one patient");
       }
       return true;
     });
+  return files;
+}
+
+//------------------------------------------------------------------------------
+void DicomFolder::ReadNew(std::map<std::string, Entry>& files, Execution& execution)
+{
   std::vector<std::pair<const std::string, Entry>*> fresh;
   for (auto& file : files)
   {
@@ -172,12 +199,12 @@ void DicomFolder::Scan(const std::string& path, Execution& execution)
     {
       for (std::int64_t i = begin; i < end; ++i)
       {
-        Entry& entry = fresh[static_cast<std::size_t>(i)]->second;
+        auto& [name, entry] = *fresh[static_cast<std::size_t>(i)];
         entry.Error.clear();
         entry.IsDicom = true;
         try
         {
-          entry.Frames = ReadDicomFrames(fresh[static_cast<std::size_t>(i)]->first);
+          entry.Frames = ReadDicomFrames(name);
         }
         catch (const NotDicomError& e)
         {
@@ -190,8 +217,11 @@ void DicomFolder::Scan(const std::string& path, Execution& execution)
         }
       }
     });
-  this->Files = std::move(files);
+}
 
+//------------------------------------------------------------------------------
+void DicomFolder::Gather()
+{
   std::vector<std::string> others;
   std::size_t bare = 0;
   for (const auto& [name, entry] : this->Files)
@@ -224,17 +254,6 @@ void DicomFolder::Scan(const std::string& path, Execution& execution)
   {
     this->Notes.push_back(std::to_string(bare) +
       " files have no DICOM preamble; their transfer syntax was told from their first elements");
-  }
-  if (single)
-  {
-    const std::string name = fs::path(path).filename().string();
-    for (const auto& file : this->Files)
-    {
-      if (fs::path(file.first).filename() == name)
-      {
-        this->Opened = file.first;
-      }
-    }
   }
 }
 

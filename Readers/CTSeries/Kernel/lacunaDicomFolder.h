@@ -41,8 +41,14 @@ private:
     bool IsDicom = false;
     std::string NoDicom; ///< why it is none
     std::vector<CTFrame> Frames;
-    std::string Error;
+    std::string Error; ///< "new": not yet read
   };
+
+  /// The regular files, with what is known of them; deep: also in folders within.
+  std::map<std::string, Entry> List(const std::string& folder, bool deep) const;
+  static void ReadNew(std::map<std::string, Entry>& files, Execution& execution);
+  /// Frames, notes and warnings of all files.
+  void Gather();
 
   std::map<std::string, Entry> Files;
   std::string Opened;

@@ -101,21 +101,26 @@ NiftiHeader GetHeader(const HeaderBytes& bytes, const Places& at)
 }
 
 //------------------------------------------------------------------------------
-void SetVoxels(VolumeFile& volume, const NiftiHeader& header)
+std::string DescribeSizes(const NiftiHeader& header)
 {
-  SequenceHeader& slices = volume.Slices;
-  const std::string& name = slices.FileName;
+  std::string sizes;
+  for (std::int64_t i = 1; i <= std::clamp<std::int64_t>(header.Dim[0], 0, 7); ++i)
+  {
+    sizes += (i == 1 ? "" : " x ") + std::to_string(header.Dim[static_cast<std::size_t>(i)]);
+  }
+  return sizes;
+}
+
+// Of the axes 1 to 7.
+std::array<std::int64_t, 8> GetSizes(const std::string& name, const NiftiHeader& header)
+{
   const std::int64_t axes = header.Dim[0];
   std::array<std::int64_t, 8> dim{};
   for (std::size_t i = 1; i < 8; ++i)
   {
     dim[i] = static_cast<std::int64_t>(i) <= axes ? header.Dim[i] : 1;
   }
-  std::string sizes;
-  for (std::int64_t i = 1; i <= std::clamp<std::int64_t>(axes, 0, 7); ++i)
-  {
-    sizes += (i == 1 ? "" : " x ") + std::to_string(header.Dim[static_cast<std::size_t>(i)]);
-  }
+  const std::string sizes = DescribeSizes(header);
   const auto tooMany = [](std::int64_t n) { return n < 1 || n > INT_MAX; };
   if (axes < 2 || axes > 7 || std::any_of(dim.begin() + 1, dim.end(), tooMany))
   {
@@ -130,25 +135,58 @@ void SetVoxels(VolumeFile& volume, const NiftiHeader& header)
         ": several volumes in one file. Save one of them in a file of its own, for example by "
         "'fslroi' or 3D Slicer");
   }
-  struct Type
-  {
-    int Code;
-    ScalarType Value;
-    int Channels;
-  };
-  static const Type types[] = { { 2, ScalarType::UInt8, 1 }, { 4, ScalarType::Int16, 1 },
+  return dim;
+}
+
+struct VoxelType
+{
+  int Code;
+  ScalarType Value;
+  int Channels;
+};
+
+VoxelType FindType(const std::string& name, const NiftiHeader& header)
+{
+  static const VoxelType types[] = { { 2, ScalarType::UInt8, 1 }, { 4, ScalarType::Int16, 1 },
     { 8, ScalarType::Int32, 1 }, { 16, ScalarType::Float32, 1 }, { 64, ScalarType::Float64, 1 },
     { 128, ScalarType::UInt8, 3 }, { 256, ScalarType::Int8, 1 }, { 512, ScalarType::UInt16, 1 },
     { 768, ScalarType::UInt32, 1 }, { 1024, ScalarType::Int64, 1 }, { 1280, ScalarType::UInt64, 1 },
     { 2304, ScalarType::UInt8, 4 } };
-  const auto* type = std::find_if(
-    std::begin(types), std::end(types), [&](const Type& t) { return t.Code == header.DataType; });
+  const auto* type = std::find_if(std::begin(types), std::end(types),
+    [&](const VoxelType& t) { return t.Code == header.DataType; });
   if (type == std::end(types))
   {
     Fail(name,
       "voxels have the type " + std::to_string(header.DataType) +
         "; known are integers of 8 to 64 bits, float, double, RGB and RGBA");
   }
+  return *type;
+}
+
+void SetRescaling(VolumeFile& volume, const NiftiHeader& header)
+{
+  if (header.Slope == 0 || volume.Slices.Channels != 1) // 0: no rescaling, by definition
+  {
+    return;
+  }
+  if (std::isfinite(header.Slope) && std::isfinite(header.Intercept))
+  {
+    volume.Slope = header.Slope;
+    volume.Intercept = header.Intercept;
+  }
+  else
+  {
+    volume.Warnings.emplace_back(
+      "scl_slope or scl_inter is not a finite number; the stored values are taken");
+  }
+}
+
+void SetVoxels(VolumeFile& volume, const NiftiHeader& header)
+{
+  SequenceHeader& slices = volume.Slices;
+  const std::string& name = slices.FileName;
+  const std::array<std::int64_t, 8> dim = GetSizes(name, header);
+  const VoxelType type = FindType(name, header);
   const std::int64_t first = FirstVoxel[header.Version - 1];
   if (header.VoxelOffset < first)
   {
@@ -162,31 +200,19 @@ void SetVoxels(VolumeFile& volume, const NiftiHeader& header)
     32.0 * static_cast<double>(dim[1]) * static_cast<double>(dim[2]) * static_cast<double>(dim[3]);
   if (bytes > 1e18)
   {
-    Fail(name, "the size is " + sizes + "; no file holds so much");
+    Fail(name, "the size is " + DescribeSizes(header) + "; no file holds so much");
   }
   slices.IsVolume = true;
   slices.Columns = dim[1];
   slices.Rows = dim[2];
   slices.Frames = dim[3];
-  slices.Channels = type->Channels;
-  slices.Type = type->Value;
+  slices.Channels = type.Channels;
+  slices.Type = type.Value;
   slices.BigEndian = header.BigEndian;
   slices.Encoding = header.Compressed ? PixelEncoding::Zlib : PixelEncoding::Raw;
   slices.DataFileName = name;
   slices.SkippedBytes = header.VoxelOffset;
-  if (header.Slope != 0 && slices.Channels == 1) // 0: no rescaling, by definition
-  {
-    if (std::isfinite(header.Slope) && std::isfinite(header.Intercept))
-    {
-      volume.Slope = header.Slope;
-      volume.Intercept = header.Intercept;
-    }
-    else
-    {
-      volume.Warnings.emplace_back(
-        "scl_slope or scl_inter is not a finite number; the stored values are taken");
-    }
-  }
+  SetRescaling(volume, header);
 }
 
 //------------------------------------------------------------------------------

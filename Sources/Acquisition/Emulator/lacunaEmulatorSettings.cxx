@@ -291,13 +291,69 @@ FastrakEmulator::PoseScript ReadMotion(const std::string& fileName, bool loop, d
   }
   return script;
 }
+
+constexpr double Longest = 1e9; // s
+
+// Reads an option of the tracker that is a setting; false when it is none.
+bool ReadTrackerOption(const std::string& option, const NextWord& word, const NextNumber& number,
+  FastrakEmulatorOptions& options)
+{
+  if (option == "--baud")
+  {
+    options.Baud = static_cast<int>(number(1, 1e6, "a rate in baud"));
+  }
+  else if (option == "--receivers")
+  {
+    options.Receivers = ReadReceivers(word());
+  }
+  else if (option == "--noise")
+  {
+    options.PositionNoise = number(0, 1000, "mm and degrees");
+    options.AngularNoise = number(0, 180, "mm and degrees");
+  }
+  else if (option == "--latency")
+  {
+    options.SampleLatency = number(0, 10, "two times up to 10 s");
+    options.AnswerLatency = number(0, 10, "two times up to 10 s");
+  }
+  else if (option == "--seed")
+  {
+    options.Seed = static_cast<std::uint32_t>(number(0, 4294967295.0, "a number of 32 bits"));
+  }
+  else
+  {
+    return false;
+  }
+  return true;
+}
+
+// The button is pressed at a time and let go.
+void AddPress(double time, EmulatorSettings& settings)
+{
+  settings.Events.push_back(
+    { time, [](FastrakEmulator& emulator, double now) { emulator.SetButton(true, now); } });
+  settings.Events.push_back({ time + PressTime,
+    [](FastrakEmulator& emulator, double now) { emulator.SetButton(false, now); } });
+}
+
+// Each fault adds to those before it.
+void AddFaults(std::vector<TimedFault> faults, EmulatorSettings& settings)
+{
+  std::stable_sort(faults.begin(), faults.end(),
+    [](const TimedFault& a, const TimedFault& b) { return a.Time < b.Time; });
+  FastrakFaults sum;
+  for (const TimedFault& fault : faults)
+  {
+    fault.Change(sum);
+    settings.Events.push_back(
+      { fault.Time, [sum](FastrakEmulator& emulator, double) { emulator.SetFaults(sum); } });
+  }
+}
 }
 
 EmulatorSettings ReadEmulatorSettings(const std::vector<std::string>& words)
 {
-  constexpr double longest = 1e9; // s
   EmulatorSettings settings;
-  FastrakEmulatorOptions& options = settings.Options;
   std::vector<TimedFault> faults;
   std::string poses;
   bool loop = false;
@@ -322,14 +378,6 @@ EmulatorSettings ReadEmulatorSettings(const std::vector<std::string>& words)
     {
       settings.Link = next();
     }
-    else if (option == "--baud")
-    {
-      options.Baud = static_cast<int>(number(1, 1e6, "a rate in baud"));
-    }
-    else if (option == "--receivers")
-    {
-      options.Receivers = ReadReceivers(next());
-    }
     else if (option == "--poses")
     {
       poses = next();
@@ -338,56 +386,32 @@ EmulatorSettings ReadEmulatorSettings(const std::vector<std::string>& words)
     {
       loop = true;
     }
-    else if (option == "--noise")
-    {
-      options.PositionNoise = number(0, 1000, "mm and degrees");
-      options.AngularNoise = number(0, 180, "mm and degrees");
-    }
-    else if (option == "--latency")
-    {
-      options.SampleLatency = number(0, 10, "two times up to 10 s");
-      options.AnswerLatency = number(0, 10, "two times up to 10 s");
-    }
-    else if (option == "--seed")
-    {
-      options.Seed = static_cast<std::uint32_t>(number(0, 4294967295.0, "a number of 32 bits"));
-    }
     else if (option == "--fault")
     {
       faults.push_back(ReadTimedFault(next()));
     }
     else if (option == "--button")
     {
-      const double time = number(0, longest, "a time in s");
-      settings.Events.push_back(
-        { time, [](FastrakEmulator& emulator, double now) { emulator.SetButton(true, now); } });
-      settings.Events.push_back({ time + PressTime,
-        [](FastrakEmulator& emulator, double now) { emulator.SetButton(false, now); } });
+      AddPress(number(0, Longest, "a time in s"), settings);
     }
     else if (option == "--seconds")
     {
-      settings.Duration = number(0, longest, "a time in s");
+      settings.Duration = number(0, Longest, "a time in s");
     }
-    else if (!ReadVideoOption(option, next, number, settings.Video))
+    else if (!ReadTrackerOption(option, next, number, settings.Options) &&
+      !ReadVideoOption(option, next, number, settings.Video))
     {
       throw std::runtime_error("There is no option '" + option + "' (see --help)");
     }
   }
   CheckVideoOptions(settings.Video);
-  const auto earlier = [](const auto& a, const auto& b) { return a.Time < b.Time; };
-  std::stable_sort(faults.begin(), faults.end(), earlier);
-  FastrakFaults sum;
-  for (const TimedFault& fault : faults)
-  {
-    fault.Change(sum);
-    settings.Events.push_back(
-      { fault.Time, [sum](FastrakEmulator& emulator, double) { emulator.SetFaults(sum); } });
-  }
-  std::stable_sort(settings.Events.begin(), settings.Events.end(), earlier);
+  AddFaults(faults, settings);
+  std::stable_sort(settings.Events.begin(), settings.Events.end(),
+    [](const auto& a, const auto& b) { return a.Time < b.Time; });
   double aim = 0;
   settings.Motion = ReadMotion(poses, loop, aim);
   settings.Video.Aim = settings.Video.Aim.value_or(aim);
-  FastrakCommand::SerialRate(options.Baud); // throws for one that the unit does not have
+  FastrakCommand::SerialRate(settings.Options.Baud); // throws for one that the unit does not have
   return settings;
 }
 }

@@ -62,6 +62,37 @@ std::string FormatColumn(double value)
   std::replace(text.begin(), text.end(), ',', '.');
   return text.data();
 }
+
+std::string DescribeLayout(const FastrakLayout& layout)
+{
+  std::string items;
+  for (const FastrakItem item : layout.GetItems())
+  {
+    const std::string text = std::to_string(static_cast<int>(item));
+    items += std::string(2 - text.size(), ' ') + text;
+  }
+  return items;
+}
+
+// From the fields of a command after the station's number; false where they make no layout.
+bool SetLayout(const std::vector<std::optional<double>>& fields, FastrakLayout& layout)
+{
+  std::vector<int> numbers;
+  for (std::size_t i = 1; i < fields.size(); ++i)
+  {
+    const double item = fields[i].value_or(-1);
+    numbers.push_back(item >= 0 && item < 100 ? static_cast<int>(item) : -1);
+  }
+  try
+  {
+    layout = FastrakLayout::FromNumbers(numbers);
+  }
+  catch (const std::invalid_argument&)
+  {
+    return false;
+  }
+  return true;
+}
 }
 
 FastrakEmulator::FastrakEmulator(PoseScript script, const FastrakEmulatorOptions& options)
@@ -226,81 +257,73 @@ void FastrakEmulator::ActOnLine(const std::string& line, double end)
     this->Complain(line, OutOfRange, end);
     return;
   }
+  this->ActOnStation(line, number, fields, end);
+}
+
+void FastrakEmulator::ActOnStation(
+  const std::string& line, int number, const std::vector<std::optional<double>>& fields, double end)
+{
   Station& station = this->Stations[number - 1];
+  const char letter = line[0];
   const std::string head{ '2', static_cast<char>('0' + number), letter };
-  if (letter == 'l')
+  const bool asks = fields.size() < 2;
+  switch (letter)
   {
-    if (fields.size() < 2)
-    {
-      std::string states;
-      for (const Station& each : this->Stations)
+    case 'l':
+      if (asks)
       {
-        states += each.Active ? '1' : '0';
+        this->Answer(head + this->DescribeActive() + "\r\n", end);
       }
-      this->Answer(head + states + "\r\n", end);
-    }
-    else
-    {
-      station.Active = fields[1].value_or(0) != 0 && this->Options.Receivers[number - 1];
-    }
+      else
+      {
+        station.Active = fields[1].value_or(0) != 0 && this->Options.Receivers[number - 1];
+      }
+      break;
+    case 'R':
+      station.TransmitterToFrame = Matrix4();
+      break;
+    case 'A':
+      if (!this->Align(station, fields))
+      {
+        this->Complain(line, Missing, end);
+      }
+      break;
+    case 'e':
+      this->ButtonAsks = asks || fields[1].value_or(0) != 0;
+      break;
+    case 'H':
+      if (asks)
+      {
+        this->Answer(head + FormatColumn(station.Zenith[0]) + FormatColumn(station.Zenith[1]) +
+            FormatColumn(station.Zenith[2]) + "\r\n",
+          end);
+      }
+      for (std::size_t i = 1; i < std::min<std::size_t>(fields.size(), 4); ++i)
+      {
+        double& value = station.Zenith[static_cast<int>(i) - 1];
+        value = fields[i].value_or(value);
+      }
+      break;
+    default: // 'O'
+      if (asks)
+      {
+        this->Answer(head + DescribeLayout(station.Layout) + "\r\n", end);
+      }
+      else if (!SetLayout(fields, station.Layout))
+      {
+        this->Complain(line, OutOfRange, end);
+      }
   }
-  else if (letter == 'R')
+}
+
+std::string FastrakEmulator::DescribeActive() const
+{
+  std::string states;
+  for (const Station& each : this->Stations)
   {
-    station.TransmitterToFrame = Matrix4();
+    states += each.Active ? '1' : '0';
   }
-  else if (letter == 'A')
-  {
-    if (!this->Align(station, fields))
-    {
-      this->Complain(line, Missing, end);
-    }
-  }
-  else if (letter == 'e')
-  {
-    this->ButtonAsks = fields.size() < 2 || fields[1].value_or(0) != 0;
-  }
-  else if (letter == 'H')
-  {
-    if (fields.size() < 2)
-    {
-      this->Answer(head + FormatColumn(station.Zenith[0]) + FormatColumn(station.Zenith[1]) +
-          FormatColumn(station.Zenith[2]) + "\r\n",
-        end);
-      return;
-    }
-    for (std::size_t i = 1; i < std::min<std::size_t>(fields.size(), 4); ++i)
-    {
-      station.Zenith[static_cast<int>(i) - 1] =
-        fields[i].value_or(station.Zenith[static_cast<int>(i) - 1]);
-    }
-  }
-  else if (fields.size() < 2)
-  {
-    std::string items;
-    for (const FastrakItem item : station.Layout.GetItems())
-    {
-      const std::string text = std::to_string(static_cast<int>(item));
-      items += std::string(2 - text.size(), ' ') + text;
-    }
-    this->Answer(head + items + "\r\n", end);
-  }
-  else
-  {
-    std::vector<int> numbers;
-    for (std::size_t i = 1; i < fields.size(); ++i)
-    {
-      const double item = fields[i].value_or(-1);
-      numbers.push_back(item >= 0 && item < 100 ? static_cast<int>(item) : -1);
-    }
-    try
-    {
-      station.Layout = FastrakLayout::FromNumbers(numbers);
-    }
-    catch (const std::invalid_argument&)
-    {
-      this->Complain(line, OutOfRange, end);
-    }
-  }
+  return states;
 }
 
 // A frame by its origin, a point on its x axis and one in its xy plane, in the frame before.

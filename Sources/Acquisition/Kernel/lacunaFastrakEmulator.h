@@ -91,6 +91,9 @@ private:
   bool IsSpoilt(const std::string& command, double end);
   bool ActOnLetter(char c, double begin, double end);
   void ActOnLine(const std::string& line, double end);
+  void ActOnStation(const std::string& line, int number,
+    const std::vector<std::optional<double>>& fields, double end);
+  std::string DescribeActive() const;
   bool Align(Station& station, const std::vector<std::optional<double>>& fields) const;
   void Answer(const std::string& bytes, double time);
   void AnswerStatus(double time);
