@@ -30,6 +30,7 @@
 #include "vtkStreamingDemandDrivenPipeline.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstring>
@@ -84,6 +85,21 @@ bool IsAnnouncedDepthMap(vtkInformation* info)
     info, vtkDataObject::FIELD_ASSOCIATION_POINTS, vtkDataSetAttributes::SCALARS);
   const char* name = scalars ? scalars->Get(vtkDataObject::FIELD_NAME()) : nullptr;
   return name && lacuna::DepthMap::DepthName == std::string(name);
+}
+
+// What is asked for of an image; empty: nothing.
+std::array<int, 6> FindPiece(const lacuna::Ports& ports, const int* extent)
+{
+  const bool isWanted = ports.IsAsked();
+  vtkInformation* info = ports.GetOutputInformation();
+  const int* asked = info->Has(SDDP::UPDATE_EXTENT()) ? info->Get(SDDP::UPDATE_EXTENT()) : extent;
+  std::array<int, 6> piece;
+  for (std::size_t c = 0; c < 3; ++c)
+  {
+    piece[2 * c] = isWanted ? std::max(asked[2 * c], extent[2 * c]) : extent[2 * c];
+    piece[2 * c + 1] = isWanted ? std::min(asked[2 * c + 1], extent[2 * c + 1]) : extent[2 * c] - 1;
+  }
+  return piece;
 }
 
 std::string Rounded(double value)
@@ -372,16 +388,7 @@ void vtkLacunaMirror::Make(const lacuna::Ports& ports, lacuna::AlgorithmExecutio
   bool isMap = false;
   const auto check = [&]
   {
-    if (this->PlaneMethod != BestSymmetry && this->PlaneMethod != Given)
-    {
-      throw std::runtime_error("PlaneMethod is " + std::to_string(this->PlaneMethod) +
-        "; it must be 0 (BestSymmetry) or 1 (Given)");
-    }
-    if (this->Interpolation < BSpline || this->Interpolation > Nearest)
-    {
-      throw std::runtime_error("Interpolation is " + std::to_string(this->Interpolation) +
-        "; it must be 0 (BSpline), 1 (Linear) or 2 (Nearest)");
-    }
+    this->CheckProperties();
     if (lacuna::Mirrored::IsMarked(input))
     {
       throw std::runtime_error("the input is a mirror image already (field data Mirrored); mirror "
@@ -392,15 +399,7 @@ void vtkLacunaMirror::Make(const lacuna::Ports& ports, lacuna::AlgorithmExecutio
   // What is wrong on one rank only may not keep the others waiting.
   ranks.Together(check);
   isMap = !ranks.AllFine(!isMap);
-  vtkInformation* info = ports.GetOutputInformation();
-  const int* extent = input->GetExtent();
-  int piece[6];
-  for (int c = 0; c < 3; ++c)
-  {
-    const int* asked = info->Has(SDDP::UPDATE_EXTENT()) ? info->Get(SDDP::UPDATE_EXTENT()) : extent;
-    piece[2 * c] = isWanted ? std::max(asked[2 * c], extent[2 * c]) : extent[2 * c];
-    piece[2 * c + 1] = isWanted ? std::min(asked[2 * c + 1], extent[2 * c + 1]) : extent[2 * c] - 1;
-  }
+  const std::array<int, 6> piece = FindPiece(ports, input->GetExtent());
   vtkNew<vtkImageData> mirrored;
   mirrored->ShallowCopy(input);
   mirrored->GetCellData()->Initialize();
@@ -408,7 +407,7 @@ void vtkLacunaMirror::Make(const lacuna::Ports& ports, lacuna::AlgorithmExecutio
   if (isMap && isWanted)
   {
     Internals::MirrorMap(this, mirrored, result, execution);
-    mirrored->Crop(piece);
+    mirrored->Crop(piece.data());
   }
   else if (!isMap)
   {
@@ -418,7 +417,7 @@ void vtkLacunaMirror::Make(const lacuna::Ports& ports, lacuna::AlgorithmExecutio
     }
     if (ranksMeet || isWanted)
     {
-      Internals::MirrorVolume(this, mirrored, piece, !ranksMeet, ranks, result, execution);
+      Internals::MirrorVolume(this, mirrored, piece.data(), !ranksMeet, ranks, result, execution);
     }
     if (ranksMeet)
     {
@@ -454,6 +453,21 @@ void vtkLacunaMirror::Make(const lacuna::Ports& ports, lacuna::AlgorithmExecutio
   }
   lacuna::Mirrored::Mark(mirrored, origin, result.Plane.Normal);
   ports.GetOutput<vtkImageData>()->ShallowCopy(mirrored);
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaMirror::CheckProperties() const
+{
+  if (this->PlaneMethod != BestSymmetry && this->PlaneMethod != Given)
+  {
+    throw std::runtime_error("PlaneMethod is " + std::to_string(this->PlaneMethod) +
+      "; it must be 0 (BestSymmetry) or 1 (Given)");
+  }
+  if (this->Interpolation < BSpline || this->Interpolation > Nearest)
+  {
+    throw std::runtime_error("Interpolation is " + std::to_string(this->Interpolation) +
+      "; it must be 0 (BSpline), 1 (Linear) or 2 (Nearest)");
+  }
 }
 
 //------------------------------------------------------------------------------
