@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkLacunaMirror.h"
 
+#include "lacunaArrayScalarType.h"
 #include "lacunaArrays.h"
 #include "lacunaDepthMap.h"
 #include "lacunaFieldData.h"
+#include "lacunaMemory.h"
 #include "lacunaMirrored.h"
 #include "lacunaMirroredMap.h"
 #include "lacunaMirroredVolume.h"
 #include "lacunaParameterText.h"
 #include "lacunaVolumeDirection.h"
-#include "lacunaVolumeMask.h"
 #include "lacunaVolumeSymmetry.h"
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
@@ -22,11 +23,13 @@
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationStringKey.h"
+#include "vtkMatrix4x4.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
+#include "vtkSmartPointer.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 
 #include <algorithm>
@@ -59,6 +62,63 @@ vtkSmartPointer<Array> MakeArray(
   lacuna::Arrays::SetNumberOfTuples(array, static_cast<vtkIdType>(values.size()) / components);
   std::copy(values.begin(), values.end(), array->GetPointer(0));
   return array;
+}
+
+// One component per point in plain memory; copies what is not so into keep.
+vtkDataArray* GetPlain(vtkDataArray* array, vtkSmartPointer<vtkDataArray>& keep)
+{
+  if (array->HasStandardMemoryLayout())
+  {
+    return array;
+  }
+  keep.TakeReference(vtkDataArray::CreateDataArray(array->GetDataType()));
+  lacuna::Arrays::Copy(array, keep);
+  return keep;
+}
+
+// The image's vtkValidPointMask, or null. Throws when it has several components.
+vtkDataArray* FindMask(vtkImageData* image)
+{
+  vtkDataArray* mask = image->GetPointData()->GetArray(lacuna::DepthMap::MaskName);
+  if (mask && mask->GetNumberOfComponents() != 1)
+  {
+    throw std::runtime_error(
+      std::string("point array '") + lacuna::DepthMap::MaskName + "' must have one component");
+  }
+  return mask;
+}
+
+// The active scalars, where they lie in the world, and which count. The image must live longer, and keep,
+// which gets the voxels where they must be copied. Throws when they have not one component, or the
+// direction has got lost.
+lacuna::MaskedVolume GetVolume(vtkImageData* image, vtkSmartPointer<vtkDataArray>& keep)
+{
+  lacuna::VolumeDirection::Check(image);
+  vtkDataArray* scalars = image->GetPointData()->GetScalars();
+  if (!scalars || scalars->GetNumberOfComponents() != 1)
+  {
+    throw std::runtime_error("the image has no active point scalars with one component; colours "
+                             "and vectors cannot be mirrored");
+  }
+  lacuna::MaskedVolume given;
+  given.Volume.Type = lacuna::ArrayScalarType::Get(scalars);
+  given.Volume.Voxels = GetPlain(scalars, keep)->GetVoidPointer(0);
+  image->GetDimensions(given.Volume.Size.data());
+  const int* extent = image->GetExtent();
+  given.Volume.IndexToWorld = lacuna::Matrix4(image->GetIndexToPhysicalMatrix()->GetData()) *
+    lacuna::Matrix4::Translation({ static_cast<double>(extent[0]), static_cast<double>(extent[2]),
+      static_cast<double>(extent[4]) });
+  if (vtkDataArray* mask = FindMask(image))
+  {
+    lacuna::RequireMemory(
+      "the mask of the volume", static_cast<double>(given.Volume.NumberOfVoxels()));
+    given.Valid.resize(static_cast<std::size_t>(given.Volume.NumberOfVoxels()));
+    for (std::size_t i = 0; i < given.Valid.size(); ++i)
+    {
+      given.Valid[i] = mask->GetComponent(static_cast<vtkIdType>(i), 0) != 0;
+    }
+  }
+  return given;
 }
 
 template <class T>
@@ -172,7 +232,7 @@ public:
     vtkSmartPointer<vtkDataArray> keep;
     const auto prepare = [&]
     {
-      given = lacuna::VolumeMask::Get(output, keep);
+      given = GetVolume(output, keep);
       if (!isKnown)
       {
         ChoosePlane(self, given, result, execution);
@@ -226,7 +286,7 @@ public:
       throw std::runtime_error("this is a perspective depth map; only parallel ones are mirrored");
     }
     std::vector<double> depth(static_cast<std::size_t>(output->GetNumberOfPoints()));
-    vtkDataArray* mask = lacuna::VolumeMask::GetMask(output);
+    vtkDataArray* mask = FindMask(output);
     for (std::size_t i = 0; i < depth.size(); ++i)
     {
       const auto p = static_cast<vtkIdType>(i);

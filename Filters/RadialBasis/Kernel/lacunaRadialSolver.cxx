@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "lacunaRadialSolver.h"
+#include "lacunaRadialSystem.h"
 
 #include "lacunaExecution.h"
 #include "lacunaFastRadialSum.h"
