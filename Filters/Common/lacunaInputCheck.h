@@ -12,6 +12,11 @@
 class vtkDataObject;
 class vtkInformation;
 
+namespace lacuna
+{
+class ControllerRanks;
+}
+
 namespace lacuna::InputCheck
 {
 /// Throws std::runtime_error that begins with name when a point or cell array has another number of
@@ -23,5 +28,11 @@ VTKLACUNAFILTERSCOMMON_EXPORT void Check(vtkDataObject* data, const std::string&
 /// Throws when data is an image of which less arrived than info asks for, as behind filters that give each rank a part.
 VTKLACUNAFILTERSCOMMON_EXPORT void CheckPart(
   vtkDataObject* data, vtkInformation* info, const std::string& name);
+
+/// Whether data are as large as those of the first rank, and lie where they do. All ranks must call it.
+VTKLACUNAFILTERSCOMMON_EXPORT bool IsSame(vtkDataObject* data, const ControllerRanks& ranks);
+
+/// The array that Extract Selection adds to its output; null: it is none.
+VTKLACUNAFILTERSCOMMON_EXPORT const char* GetExtractedName(vtkDataObject* data);
 }
 #endif

@@ -8,7 +8,6 @@
 #include "lacunaPrintableText.h"
 #include "lacunaProvenance.h"
 #include "vtkAlgorithmOutput.h"
-#include "vtkCellData.h"
 #include "vtkCommand.h"
 #include "vtkCompositeDataSet.h"
 #include "vtkDataArray.h"
@@ -20,9 +19,7 @@
 #include "vtkInformation.h"
 #include "vtkInformationIntegerRequestKey.h"
 #include "vtkInformationVector.h"
-#include "vtkMatrix3x3.h"
 #include "vtkNew.h"
-#include "vtkPointData.h"
 #include "vtkPointSet.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkTable.h"
@@ -32,7 +29,6 @@
 #include <new>
 #include <sstream>
 #include <stdexcept>
-#include <string_view>
 
 using SDDP = vtkStreamingDemandDrivenPipeline;
 
@@ -177,54 +173,6 @@ void ForEachInput(vtkAlgorithm* algorithm, const Callable& body)
       body(port, i, algorithm->GetInputInformation(port, i));
     }
   }
-}
-
-/// The array that Extract Selection adds to its output; null: it is none.
-const char* GetExtractedName(vtkDataObject* data)
-{
-  auto* set = vtkDataSet::SafeDownCast(data);
-  for (const char* name : { "vtkOriginalPointIds", "vtkInsidedness" })
-  {
-    if (set && (set->GetPointData()->HasArray(name) || set->GetCellData()->HasArray(name)))
-    {
-      return name;
-    }
-  }
-  return nullptr;
-}
-
-/// Three numbers of its size, and a hash of where it is.
-std::array<std::uint64_t, 4> GetFingerprint(vtkDataObject* data)
-{
-  std::array<std::uint64_t, 4> numbers{};
-  const auto hash = [&numbers](const void* values, std::size_t bytes)
-  {
-    const std::string_view text(static_cast<const char*>(values), bytes);
-    numbers[3] = 31 * numbers[3] + std::hash<std::string_view>{}(text);
-  };
-  if (auto* image = vtkImageData::SafeDownCast(data))
-  {
-    int dimensions[3];
-    image->GetDimensions(dimensions);
-    std::copy_n(dimensions, 3, numbers.begin());
-    hash(image->GetOrigin(), 3 * sizeof(double));
-    hash(image->GetSpacing(), 3 * sizeof(double));
-    hash(image->GetDirectionMatrix()->GetData(), 9 * sizeof(double));
-  }
-  else if (data)
-  {
-    numbers[0] = data->GetNumberOfElements(vtkDataObject::POINT);
-    numbers[1] = data->GetNumberOfElements(vtkDataObject::CELL);
-    numbers[2] = data->GetNumberOfElements(vtkDataObject::ROW);
-    auto* set = vtkPointSet::SafeDownCast(data);
-    vtkDataArray* points = set && set->GetPoints() ? set->GetPoints()->GetData() : nullptr;
-    if (points && points->GetNumberOfValues() > 0)
-    {
-      hash(points->GetVoidPointer(0),
-        static_cast<std::size_t>(points->GetNumberOfValues()) * points->GetDataTypeSize());
-    }
-  }
-  return numbers;
 }
 }
 
@@ -565,23 +513,15 @@ std::string Algorithm::CompareInputs(const lacuna::ControllerRanks& ranks) const
     [&](int port, int i, vtkInformation*)
     {
       vtkDataObject* data = this->Self->GetInputDataObject(port, i);
-      const auto own = GetFingerprint(data);
-      auto first = own;
-      if (ranks.GetRank() > 0)
-      {
-        first = {};
-      }
-      ranks.Sum(first.data(), static_cast<std::int64_t>(first.size()));
       // what only the first rank makes is nowhere else
-      const bool isElsewhere =
-        this->Sharing == Share::FirstRank && own[0] == 0 && own[1] == 0 && own[2] == 0;
-      if (own != first && !isElsewhere)
+      const bool isElsewhere = this->Sharing == Share::FirstRank && HasNoElements(data);
+      if (!InputCheck::IsSame(data, ranks) && !isElsewhere)
       {
         differs = "the inputs are not the same on all ranks: a filter before this one gives each "
                   "rank a part, or all to the first, or the nodes have other files; save the data "
                   "and read them again, or run one rank";
       }
-      if (const char* name = GetExtractedName(data))
+      if (const char* name = InputCheck::GetExtractedName(data))
       {
         extracted = "input " + std::to_string(port) + " was extracted by a selection (array " +
           name +

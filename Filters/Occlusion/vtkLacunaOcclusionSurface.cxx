@@ -247,6 +247,20 @@ void vtkLacunaOcclusionSurface::Make(
   lacuna::VolumeDirection::Remove(output);
   const lacuna::OcclusionSurfaceReport& report = fit.GetReport();
   const double edge = std::cbrt(grid.Spacing[0] * grid.Spacing[1] * grid.Spacing[2]);
+  this->WarnOfFit(report, edge);
+  this->WarnOfCavity(report, angle);
+  const auto set = [output](const char* name, double value)
+  { lacuna::FieldData::Set(output, name, { value }, 1); };
+  set("SurfaceVolume", measures.Volume / 1000);
+  set("SurfaceArea", measures.Area);
+  set("DataVoxels", static_cast<double>(report.DataVoxels));
+  set("Outliers", static_cast<double>(report.Outliers));
+  set("Residual", report.Residual);
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaOcclusionSurface::WarnOfFit(const lacuna::OcclusionSurfaceReport& report, double edge)
+{
   if (report.Residual > 0.45 * edge || report.Outliers > report.DataVoxels)
   {
     vtkWarningMacro(<< "the surface may be wrong: " << report.Outliers << " of "
@@ -256,6 +270,12 @@ void vtkLacunaOcclusionSurface::Make(
                        "voxels of the surface, not of the body's inside: use "
                        "lacuna.occlusion.closed_surface for these");
   }
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaOcclusionSurface::WarnOfCavity(
+  const lacuna::OcclusionSurfaceReport& report, vtkImageData* angle)
+{
   if (report.Together > 0)
   {
     double place[3];
@@ -272,13 +292,6 @@ void vtkLacunaOcclusionSurface::Make(
                     << place[2] << "): the surface closes it, and its volume is too large. If "
                     << "it is one, use lacuna.occlusion.closed_surface");
   }
-  const auto set = [output](const char* name, double value)
-  { lacuna::FieldData::Set(output, name, { value }, 1); };
-  set("SurfaceVolume", measures.Volume / 1000);
-  set("SurfaceArea", measures.Area);
-  set("DataVoxels", static_cast<double>(report.DataVoxels));
-  set("Outliers", static_cast<double>(report.Outliers));
-  set("Residual", report.Residual);
 }
 
 //------------------------------------------------------------------------------

@@ -32,6 +32,13 @@
 
 #include <string> // for the array's name
 
+class vtkImageData;
+
+namespace lacuna
+{
+struct OcclusionSurfaceReport;
+}
+
 class VTKLACUNAFILTERSOCCLUSION_EXPORT vtkLacunaOcclusionSurface
   : public vtkLacunaAlgorithmOf(vtkPolyDataAlgorithm)
 {
@@ -75,5 +82,9 @@ protected:
 private:
   vtkLacunaOcclusionSurface(const vtkLacunaOcclusionSurface&) = delete;
   void operator=(const vtkLacunaOcclusionSurface&) = delete;
+
+  void WarnOfFit(
+    const lacuna::OcclusionSurfaceReport& report, double edge); ///< edge: of a voxel, mm
+  void WarnOfCavity(const lacuna::OcclusionSurfaceReport& report, vtkImageData* angle);
 };
 #endif

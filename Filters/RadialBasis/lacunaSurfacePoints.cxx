@@ -217,6 +217,83 @@ lacuna::Vec3 GetAreaVector(const std::vector<lacuna::Vec3>& loop)
   }
   return area;
 }
+
+// A line without points that repeat the one before. A closed one ends where it starts.
+Outline ReadOutline(vtkPolyData* lines, vtkIdType number, const std::string& name)
+{
+  Outline outline;
+  vtkNew<vtkIdList> cell;
+  lines->GetCellPoints(number, cell);
+  for (vtkIdType k = 0; k < cell->GetNumberOfIds(); ++k)
+  {
+    const lacuna::Vec3 x = GetPoint(lines, cell->GetId(k));
+    if (!lacuna::IsFinite(x))
+    {
+      throw std::runtime_error("a point of an outline of " + name + " is not finite");
+    }
+    if (outline.Points.empty() || !(x == outline.Points.back()))
+    {
+      outline.Points.push_back(x);
+      outline.Ids.push_back(cell->GetId(k));
+    }
+  }
+  return outline;
+}
+
+// Leaves MostOutlinePoints and the last: the hand's errors are alike from point to point.
+void ThinOut(Outline& outline)
+{
+  std::vector<lacuna::Vec3>& loop = outline.Points;
+  std::vector<vtkIdType>& ids = outline.Ids;
+  if (loop.size() > MostOutlinePoints)
+  {
+    const std::size_t step = (loop.size() + MostOutlinePoints - 1) / MostOutlinePoints;
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i + 1 < loop.size(); i += step, ++kept)
+    {
+      loop[kept] = loop[i];
+      ids[kept] = ids[i];
+    }
+    loop[kept] = loop.back();
+    ids[kept] = ids.back();
+    loop.resize(kept + 1);
+    ids.resize(kept + 1);
+  }
+}
+
+// Takes away the point that repeats the first, and finds Across. Throws when it is no outline of an area.
+void CloseOutline(Outline& outline, const std::string& name)
+{
+  std::vector<lacuna::Vec3>& loop = outline.Points;
+  if (loop.size() < 4 || !(loop.front() == loop.back()))
+  {
+    throw std::runtime_error("an outline of " + name + " that starts at " +
+      Describe(loop.empty() ? lacuna::Vec3{} : loop.front()) +
+      " is not closed, or has fewer than 3 points; join its ends");
+  }
+  loop.pop_back();
+  const lacuna::Vec3 area = GetAreaVector(loop);
+  outline.Across = lacuna::Normalized(area);
+  double size = 0;
+  double leaves = 0;
+  for (const lacuna::Vec3& x : loop)
+  {
+    size = std::max(size, lacuna::Norm(x - loop[0]));
+    leaves = std::max(leaves, std::abs(lacuna::Dot(x - loop[0], outline.Across)));
+  }
+  constexpr double flatness = 0.05;
+  if (!(lacuna::Norm(area) > 1e-6 * size * size))
+  {
+    throw std::runtime_error("an outline of " + name + " that starts at " + Describe(loop[0]) +
+      " encloses no area: it crosses itself, or goes back on its way; split it where it crosses");
+  }
+  if (leaves > flatness * size)
+  {
+    throw std::runtime_error("an outline of " + name + " that starts at " + Describe(loop[0]) +
+      " does not lie in a plane (it leaves it by " + std::to_string(leaves) +
+      " mm); outlines must be planar, and those of different planes must not share points");
+  }
+}
 }
 
 //------------------------------------------------------------------------------
@@ -339,6 +416,48 @@ void lacuna::SurfacePoints::AddPoints(lacuna::Execution& execution, vtkDataSet* 
   const std::string& name, vtkDataArray* errors, bool someWithout)
 {
   vtkDataArray* normals = FindNormals(data);
+  std::vector<vtkIdType> ids;
+  std::vector<lacuna::Vec3> points;
+  this->FindPlaces(data, name, ids, points);
+  if (!normals)
+  {
+    LeaveOutRepeated(points, ids); // which would be all the neighbours there are
+  }
+  if (points.empty())
+  {
+    return;
+  }
+  std::vector<lacuna::Vec3> estimated;
+  if (!normals)
+  {
+    estimated = this->EstimateNormals(execution, points, name);
+  }
+  for (std::size_t i = 0; i < points.size(); ++i)
+  {
+    lacuna::Vec3 normal = normals ? lacuna::Vec3{} : estimated[i];
+    if (normals)
+    {
+      normals->GetTuple(ids[i], normal.data());
+      if (!lacuna::HasDirection(normal) && someWithout)
+      {
+        continue; // in no triangle that has an area
+      }
+      if (!lacuna::HasDirection(normal))
+      {
+        throw std::runtime_error("the normal of point " + std::to_string(ids[i]) + " of " + name +
+          " at " + Describe(points[i]) +
+          " is zero or not finite; remove the point, or the array of "
+          "normals");
+      }
+    }
+    this->AddPoint(points[i].data(), normal, {}, errors ? errors->GetComponent(ids[i], 0) : 1);
+  }
+}
+
+//------------------------------------------------------------------------------
+void lacuna::SurfacePoints::FindPlaces(vtkDataSet* data, const std::string& name,
+  std::vector<vtkIdType>& ids, std::vector<lacuna::Vec3>& points)
+{
   vtkDataArray* sides =
     this->SideArray.empty() ? nullptr : data->GetPointData()->GetArray(this->SideArray.c_str());
   if (sides && sides->GetNumberOfComponents() != 1)
@@ -347,8 +466,6 @@ void lacuna::SurfacePoints::AddPoints(lacuna::Execution& execution, vtkDataSet* 
       std::to_string(sides->GetNumberOfComponents()) + " components; it must have one");
   }
   this->HasSides = this->HasSides || sides;
-  std::vector<vtkIdType> ids; // of points on the surface
-  std::vector<lacuna::Vec3> points;
   for (vtkIdType i = 0; i < data->GetNumberOfPoints(); ++i)
   {
     const lacuna::Vec3 x = GetPoint(data, i);
@@ -366,78 +483,48 @@ void lacuna::SurfacePoints::AddPoints(lacuna::Execution& execution, vtkDataSet* 
     ids.push_back(i);
     points.push_back(x);
   }
-  if (!normals)
+}
+
+//------------------------------------------------------------------------------
+std::vector<lacuna::Vec3> lacuna::SurfacePoints::EstimateNormals(
+  lacuna::Execution& execution, const std::vector<lacuna::Vec3>& points, const std::string& name)
+{
+  if (std::all_of(
+        points.begin(), points.end(), [&](const lacuna::Vec3& x) { return x == points[0]; }))
   {
-    LeaveOutRepeated(points, ids); // which would be all the neighbours there are
+    throw std::runtime_error("all points of " + name + " lie in one place, at " +
+      Describe(points[0]) + "; check the coordinates and what made them");
   }
-  const auto n = static_cast<vtkIdType>(points.size());
-  if (n == 0)
+  lacuna::PointNormals estimated = lacuna::EstimateNormals(execution, points);
+  this->HasEstimatedNormals = true;
+  if (2 * estimated.Linear > static_cast<std::int64_t>(points.size()))
   {
-    return;
+    throw std::runtime_error("most points of " + name + " lie on lines (one at " +
+      Describe(estimated.LinearAt) +
+      "), so that normals cannot be estimated; give the points normals, or join those of "
+      "outlines "
+      "to closed polylines");
   }
-  lacuna::PointNormals estimated;
-  if (!normals)
+  if (LieInPlane(points, estimated.Normals[0]))
   {
-    if (std::all_of(
-          points.begin(), points.end(), [&](const lacuna::Vec3& x) { return x == points[0]; }))
-    {
-      throw std::runtime_error("all points of " + name + " lie in one place, at " +
-        Describe(points[0]) + "; check the coordinates and what made them");
-    }
-    estimated = lacuna::EstimateNormals(execution, points);
-    this->HasEstimatedNormals = true;
-    if (2 * estimated.Linear > n)
-    {
-      throw std::runtime_error("most points of " + name + " lie on lines (one at " +
-        Describe(estimated.LinearAt) +
-        "), so that normals cannot be estimated; give the points normals, or join those of "
-        "outlines "
-        "to closed polylines");
-    }
-    if (LieInPlane(points, estimated.Normals[0]))
-    {
-      throw std::runtime_error("the points of " + name +
-        " lie in one plane, so that they do not say where the solid is; give them normals, or join "
-        "those of an outline to a closed polyline");
-    }
-    if (estimated.Conflicts > 0)
-    {
-      this->Warnings.push_back("the sides of " + name + " are not certain at " +
-        std::to_string(estimated.Conflicts) + " pairs of neighbouring points, first at " +
-        Describe(estimated.ConflictAt) +
-        ": the points are too sparse there, or sheets come too close; give the points normals");
-    }
-    if (estimated.Parts > 1)
-    {
-      this->Warnings.push_back(name + " has " + std::to_string(estimated.Parts) +
-        " parts that do not touch; each was oriented for itself. Give the points normals if a part "
-        "is inside out");
-    }
+    throw std::runtime_error("the points of " + name +
+      " lie in one plane, so that they do not say where the solid is; give them normals, or join "
+      "those of an outline to a closed polyline");
   }
-  for (vtkIdType i = 0; i < n; ++i)
+  if (estimated.Conflicts > 0)
   {
-    lacuna::Vec3 normal;
-    if (normals)
-    {
-      normals->GetTuple(ids[i], normal.data());
-      if (!lacuna::HasDirection(normal) && someWithout)
-      {
-        continue; // in no triangle that has an area
-      }
-      if (!lacuna::HasDirection(normal))
-      {
-        throw std::runtime_error("the normal of point " + std::to_string(ids[i]) + " of " + name +
-          " at " + Describe(points[i]) +
-          " is zero or not finite; remove the point, or the array of "
-          "normals");
-      }
-    }
-    else
-    {
-      normal = estimated.Normals[i];
-    }
-    this->AddPoint(points[i].data(), normal, {}, errors ? errors->GetComponent(ids[i], 0) : 1);
+    this->Warnings.push_back("the sides of " + name + " are not certain at " +
+      std::to_string(estimated.Conflicts) + " pairs of neighbouring points, first at " +
+      Describe(estimated.ConflictAt) +
+      ": the points are too sparse there, or sheets come too close; give the points normals");
   }
+  if (estimated.Parts > 1)
+  {
+    this->Warnings.push_back(name + " has " + std::to_string(estimated.Parts) +
+      " parts that do not touch; each was oriented for itself. Give the points normals if a part "
+      "is inside out");
+  }
+  return std::move(estimated.Normals);
 }
 
 //------------------------------------------------------------------------------
@@ -452,70 +539,12 @@ void lacuna::SurfacePoints::AddOutlines(
   joined->JoinContiguousSegmentsOn();
   joined->Update();
   vtkPolyData* loops = joined->GetOutput();
-  vtkNew<vtkIdList> cell;
   std::vector<Outline> closed;
   for (vtkIdType c = 0; c < loops->GetNumberOfLines(); ++c)
   {
-    loops->GetCellPoints(c, cell);
-    std::vector<vtkIdType> ids;
-    std::vector<lacuna::Vec3> loop;
-    for (vtkIdType k = 0; k < cell->GetNumberOfIds(); ++k)
-    {
-      const lacuna::Vec3 x = GetPoint(loops, cell->GetId(k));
-      if (!lacuna::IsFinite(x))
-      {
-        throw std::runtime_error("a point of an outline of " + name + " is not finite");
-      }
-      if (loop.empty() || !(x == loop.back()))
-      {
-        loop.push_back(x);
-        ids.push_back(cell->GetId(k));
-      }
-    }
-    if (loop.size() > MostOutlinePoints)
-    {
-      // the hand's errors are alike from point to point
-      const std::size_t step = (loop.size() + MostOutlinePoints - 1) / MostOutlinePoints;
-      std::size_t kept = 0;
-      for (std::size_t i = 0; i + 1 < loop.size(); i += step, ++kept)
-      {
-        loop[kept] = loop[i];
-        ids[kept] = ids[i];
-      }
-      loop[kept] = loop.back();
-      ids[kept] = ids.back();
-      loop.resize(kept + 1);
-      ids.resize(kept + 1);
-    }
-    if (loop.size() < 4 || !(loop.front() == loop.back()))
-    {
-      throw std::runtime_error("an outline of " + name + " that starts at " +
-        Describe(loop.empty() ? lacuna::Vec3{} : loop.front()) +
-        " is not closed, or has fewer than 3 points; join its ends");
-    }
-    loop.pop_back();
-    const lacuna::Vec3 area = GetAreaVector(loop);
-    const lacuna::Vec3 across = lacuna::Normalized(area);
-    double size = 0;
-    double leaves = 0;
-    for (const lacuna::Vec3& x : loop)
-    {
-      size = std::max(size, lacuna::Norm(x - loop[0]));
-      leaves = std::max(leaves, std::abs(lacuna::Dot(x - loop[0], across)));
-    }
-    constexpr double flatness = 0.05;
-    if (!(lacuna::Norm(area) > 1e-6 * size * size))
-    {
-      throw std::runtime_error("an outline of " + name + " that starts at " + Describe(loop[0]) +
-        " encloses no area: it crosses itself, or goes back on its way; split it where it crosses");
-    }
-    if (leaves > flatness * size)
-    {
-      throw std::runtime_error("an outline of " + name + " that starts at " + Describe(loop[0]) +
-        " does not lie in a plane (it leaves it by " + std::to_string(leaves) +
-        " mm); outlines must be planar, and those of different planes must not share points");
-    }
-    closed.push_back({ std::move(loop), std::move(ids), across });
+    closed.push_back(ReadOutline(loops, c, name));
+    ThinOut(closed.back());
+    CloseOutline(closed.back(), name);
   }
   for (const Outline& outline : closed)
   {

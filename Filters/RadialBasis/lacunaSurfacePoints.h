@@ -5,6 +5,7 @@
 #define lacunaSurfacePoints_h
 
 #include "lacunaSurfaceSpline.h"
+#include "vtkType.h"
 
 #include <string>
 #include <vector>
@@ -55,6 +56,11 @@ private:
   // someWithout: points whose normal is zero are left out
   void AddPoints(Execution& execution, vtkDataSet* data, const std::string& name,
     vtkDataArray* errors, bool someWithout);
+  // Those on the surface; others become places inside or outside.
+  void FindPlaces(vtkDataSet* data, const std::string& name, std::vector<vtkIdType>& ids,
+    std::vector<Vec3>& points);
+  std::vector<Vec3> EstimateNormals(
+    Execution& execution, const std::vector<Vec3>& points, const std::string& name);
 };
 }
 #endif

@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkLacunaMirror.h"
 
+#include "lacunaArrayScalarType.h"
 #include "lacunaArrays.h"
 #include "lacunaDepthMap.h"
 #include "lacunaFieldData.h"
+#include "lacunaMemory.h"
 #include "lacunaMirrored.h"
 #include "lacunaMirroredMap.h"
 #include "lacunaMirroredVolume.h"
 #include "lacunaParameterText.h"
 #include "lacunaVolumeDirection.h"
-#include "lacunaVolumeMask.h"
 #include "lacunaVolumeSymmetry.h"
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
@@ -22,14 +23,17 @@
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationStringKey.h"
+#include "vtkMatrix4x4.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
+#include "vtkSmartPointer.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstring>
@@ -60,6 +64,63 @@ vtkSmartPointer<Array> MakeArray(
   return array;
 }
 
+// One component per point in plain memory; copies what is not so into keep.
+vtkDataArray* GetPlain(vtkDataArray* array, vtkSmartPointer<vtkDataArray>& keep)
+{
+  if (array->HasStandardMemoryLayout())
+  {
+    return array;
+  }
+  keep.TakeReference(vtkDataArray::CreateDataArray(array->GetDataType()));
+  lacuna::Arrays::Copy(array, keep);
+  return keep;
+}
+
+// The image's vtkValidPointMask, or null. Throws when it has several components.
+vtkDataArray* FindMask(vtkImageData* image)
+{
+  vtkDataArray* mask = image->GetPointData()->GetArray(lacuna::DepthMap::MaskName);
+  if (mask && mask->GetNumberOfComponents() != 1)
+  {
+    throw std::runtime_error(
+      std::string("point array '") + lacuna::DepthMap::MaskName + "' must have one component");
+  }
+  return mask;
+}
+
+// The active scalars, where they lie in the world, and which count. The image must live longer, and keep,
+// which gets the voxels where they must be copied. Throws when they have not one component, or the
+// direction has got lost.
+lacuna::MaskedVolume GetVolume(vtkImageData* image, vtkSmartPointer<vtkDataArray>& keep)
+{
+  lacuna::VolumeDirection::Check(image);
+  vtkDataArray* scalars = image->GetPointData()->GetScalars();
+  if (!scalars || scalars->GetNumberOfComponents() != 1)
+  {
+    throw std::runtime_error("the image has no active point scalars with one component; colours "
+                             "and vectors cannot be mirrored");
+  }
+  lacuna::MaskedVolume given;
+  given.Volume.Type = lacuna::ArrayScalarType::Get(scalars);
+  given.Volume.Voxels = GetPlain(scalars, keep)->GetVoidPointer(0);
+  image->GetDimensions(given.Volume.Size.data());
+  const int* extent = image->GetExtent();
+  given.Volume.IndexToWorld = lacuna::Matrix4(image->GetIndexToPhysicalMatrix()->GetData()) *
+    lacuna::Matrix4::Translation({ static_cast<double>(extent[0]), static_cast<double>(extent[2]),
+      static_cast<double>(extent[4]) });
+  if (vtkDataArray* mask = FindMask(image))
+  {
+    lacuna::RequireMemory(
+      "the mask of the volume", static_cast<double>(given.Volume.NumberOfVoxels()));
+    given.Valid.resize(static_cast<std::size_t>(given.Volume.NumberOfVoxels()));
+    for (std::size_t i = 0; i < given.Valid.size(); ++i)
+    {
+      given.Valid[i] = mask->GetComponent(static_cast<vtkIdType>(i), 0) != 0;
+    }
+  }
+  return given;
+}
+
 template <class T>
 void Free(std::vector<T>& values)
 {
@@ -84,6 +145,21 @@ bool IsAnnouncedDepthMap(vtkInformation* info)
     info, vtkDataObject::FIELD_ASSOCIATION_POINTS, vtkDataSetAttributes::SCALARS);
   const char* name = scalars ? scalars->Get(vtkDataObject::FIELD_NAME()) : nullptr;
   return name && lacuna::DepthMap::DepthName == std::string(name);
+}
+
+// What is asked for of an image; empty: nothing.
+std::array<int, 6> FindPiece(const lacuna::Ports& ports, const int* extent)
+{
+  const bool isWanted = ports.IsAsked();
+  vtkInformation* info = ports.GetOutputInformation();
+  const int* asked = info->Has(SDDP::UPDATE_EXTENT()) ? info->Get(SDDP::UPDATE_EXTENT()) : extent;
+  std::array<int, 6> piece;
+  for (std::size_t c = 0; c < 3; ++c)
+  {
+    piece[2 * c] = isWanted ? std::max(asked[2 * c], extent[2 * c]) : extent[2 * c];
+    piece[2 * c + 1] = isWanted ? std::min(asked[2 * c + 1], extent[2 * c + 1]) : extent[2 * c] - 1;
+  }
+  return piece;
 }
 
 std::string Rounded(double value)
@@ -156,7 +232,7 @@ public:
     vtkSmartPointer<vtkDataArray> keep;
     const auto prepare = [&]
     {
-      given = lacuna::VolumeMask::Get(output, keep);
+      given = GetVolume(output, keep);
       if (!isKnown)
       {
         ChoosePlane(self, given, result, execution);
@@ -210,7 +286,7 @@ public:
       throw std::runtime_error("this is a perspective depth map; only parallel ones are mirrored");
     }
     std::vector<double> depth(static_cast<std::size_t>(output->GetNumberOfPoints()));
-    vtkDataArray* mask = lacuna::VolumeMask::GetMask(output);
+    vtkDataArray* mask = FindMask(output);
     for (std::size_t i = 0; i < depth.size(); ++i)
     {
       const auto p = static_cast<vtkIdType>(i);
@@ -372,16 +448,7 @@ void vtkLacunaMirror::Make(const lacuna::Ports& ports, lacuna::AlgorithmExecutio
   bool isMap = false;
   const auto check = [&]
   {
-    if (this->PlaneMethod != BestSymmetry && this->PlaneMethod != Given)
-    {
-      throw std::runtime_error("PlaneMethod is " + std::to_string(this->PlaneMethod) +
-        "; it must be 0 (BestSymmetry) or 1 (Given)");
-    }
-    if (this->Interpolation < BSpline || this->Interpolation > Nearest)
-    {
-      throw std::runtime_error("Interpolation is " + std::to_string(this->Interpolation) +
-        "; it must be 0 (BSpline), 1 (Linear) or 2 (Nearest)");
-    }
+    this->CheckProperties();
     if (lacuna::Mirrored::IsMarked(input))
     {
       throw std::runtime_error("the input is a mirror image already (field data Mirrored); mirror "
@@ -392,15 +459,7 @@ void vtkLacunaMirror::Make(const lacuna::Ports& ports, lacuna::AlgorithmExecutio
   // What is wrong on one rank only may not keep the others waiting.
   ranks.Together(check);
   isMap = !ranks.AllFine(!isMap);
-  vtkInformation* info = ports.GetOutputInformation();
-  const int* extent = input->GetExtent();
-  int piece[6];
-  for (int c = 0; c < 3; ++c)
-  {
-    const int* asked = info->Has(SDDP::UPDATE_EXTENT()) ? info->Get(SDDP::UPDATE_EXTENT()) : extent;
-    piece[2 * c] = isWanted ? std::max(asked[2 * c], extent[2 * c]) : extent[2 * c];
-    piece[2 * c + 1] = isWanted ? std::min(asked[2 * c + 1], extent[2 * c + 1]) : extent[2 * c] - 1;
-  }
+  const std::array<int, 6> piece = FindPiece(ports, input->GetExtent());
   vtkNew<vtkImageData> mirrored;
   mirrored->ShallowCopy(input);
   mirrored->GetCellData()->Initialize();
@@ -408,7 +467,7 @@ void vtkLacunaMirror::Make(const lacuna::Ports& ports, lacuna::AlgorithmExecutio
   if (isMap && isWanted)
   {
     Internals::MirrorMap(this, mirrored, result, execution);
-    mirrored->Crop(piece);
+    mirrored->Crop(piece.data());
   }
   else if (!isMap)
   {
@@ -418,7 +477,7 @@ void vtkLacunaMirror::Make(const lacuna::Ports& ports, lacuna::AlgorithmExecutio
     }
     if (ranksMeet || isWanted)
     {
-      Internals::MirrorVolume(this, mirrored, piece, !ranksMeet, ranks, result, execution);
+      Internals::MirrorVolume(this, mirrored, piece.data(), !ranksMeet, ranks, result, execution);
     }
     if (ranksMeet)
     {
@@ -454,6 +513,21 @@ void vtkLacunaMirror::Make(const lacuna::Ports& ports, lacuna::AlgorithmExecutio
   }
   lacuna::Mirrored::Mark(mirrored, origin, result.Plane.Normal);
   ports.GetOutput<vtkImageData>()->ShallowCopy(mirrored);
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaMirror::CheckProperties() const
+{
+  if (this->PlaneMethod != BestSymmetry && this->PlaneMethod != Given)
+  {
+    throw std::runtime_error("PlaneMethod is " + std::to_string(this->PlaneMethod) +
+      "; it must be 0 (BestSymmetry) or 1 (Given)");
+  }
+  if (this->Interpolation < BSpline || this->Interpolation > Nearest)
+  {
+    throw std::runtime_error("Interpolation is " + std::to_string(this->Interpolation) +
+      "; it must be 0 (BSpline), 1 (Linear) or 2 (Nearest)");
+  }
 }
 
 //------------------------------------------------------------------------------

@@ -110,6 +110,8 @@ private:
 
   class Internals;
 
+  void CheckProperties() const;
+
   int PlaneMethod = BestSymmetry;
   double Origin[3] = { 0, 0, 0 };
   double Normal[3] = { 1, 0, 0 };

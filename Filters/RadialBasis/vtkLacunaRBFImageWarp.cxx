@@ -54,6 +54,8 @@ constexpr double FoldedLimit = 0.05;
 using WarpedPart = lacuna::WarpedPart;
 using Box = WarpedPart::Box;
 
+constexpr Box NoVoxels{ 0, -1, 0, -1, 0, -1 };
+
 bool IsEmpty(const Box& box)
 {
   return box[0] > box[1] || box[2] > box[3] || box[4] > box[5];
@@ -87,6 +89,40 @@ Box GetBox(const int* extent, const lacuna::VoxelSpace& space)
   return box;
 }
 
+Box GetAsked(const lacuna::Ports& ports, const lacuna::VoxelSpace& space)
+{
+  using SDDP = vtkStreamingDemandDrivenPipeline;
+  vtkInformation* info = ports.GetOutputInformation();
+  return GetBox(
+    info->Has(SDDP::UPDATE_EXTENT()) ? info->Get(SDDP::UPDATE_EXTENT()) : space.Extent, space);
+}
+
+vtkDataArray* FindScalars(vtkImageData* image)
+{
+  vtkDataArray* scalars = image->GetPointData()->GetScalars();
+  if (!scalars)
+  {
+    throw std::runtime_error("the image has no active point scalars");
+  }
+  if (scalars->GetName() && !std::strcmp(scalars->GetName(), lacuna::DepthMap::MaskName))
+  {
+    throw std::runtime_error("the image's active scalars are its vtkValidPointMask; choose the "
+                             "array that shall be warped as the active one");
+  }
+  return scalars;
+}
+
+void RequireMemoryOfPart(const Box& made, vtkDataArray* scalars)
+{
+  double points = 1;
+  for (std::size_t c = 0; c < 3; ++c)
+  {
+    points *= static_cast<double>(made[2 * c + 1]) - made[2 * c] + 1;
+  }
+  lacuna::RequireMemory("the warped image",
+    points * (1.0 + scalars->GetDataTypeSize() * scalars->GetNumberOfComponents()));
+}
+
 // The voxels of the image of which a rank says whether they are folded: those that ParaView asks of
 // it, so that they are computed once, but each of one rank only.
 Box GetShare(const lacuna::VoxelSpace& space, const lacuna::Ranks& ranks)
@@ -98,7 +134,7 @@ Box GetShare(const lacuna::VoxelSpace& space, const lacuna::Ranks& ranks)
   if (!translator->PieceToExtentThreadSafe(
         ranks.GetRank(), ranks.GetNumber(), 0, whole, extent, vtkExtentTranslator::BLOCK_MODE, 0))
   {
-    return { 0, -1, 0, -1, 0, -1 };
+    return NoVoxels;
   }
   Box share = GetBox(extent, space);
   for (std::size_t c = 0; c < 3; ++c)
@@ -181,7 +217,7 @@ void Pass(lacuna::AlgorithmExecution& execution, Mapping& mapping, const Box& bo
 
 // Makes part (may be null) of box made, and counts what is folded in box counted; both may be empty.
 template <class Mapping>
-Counts Warp(lacuna::AlgorithmExecution& execution, Mapping& mapping, const Box& made,
+Counts WarpAndCount(lacuna::AlgorithmExecution& execution, Mapping& mapping, const Box& made,
   WarpedPart* part, const Box& counted)
 {
   const Box both = Join(made, counted);
@@ -196,7 +232,7 @@ Counts Warp(lacuna::AlgorithmExecution& execution, Mapping& mapping, const Box& 
   if (part)
   {
     execution.SetStage(0.4, apart ? 0.8 : 1);
-    Pass(execution, mapping, made, part, apart ? Box{ 0, -1, 0, -1, 0, -1 } : counted, sum);
+    Pass(execution, mapping, made, part, apart ? NoVoxels : counted, sum);
   }
   if (apart)
   {
@@ -206,6 +242,25 @@ Counts Warp(lacuna::AlgorithmExecution& execution, Mapping& mapping, const Box& 
   return sum;
 }
 }
+
+//------------------------------------------------------------------------------
+struct vtkLacunaRBFImageWarp::Task
+{
+  vtkImageData* Image = nullptr;
+  vtkDataArray* Scalars = nullptr;
+  std::optional<lacuna::VoxelSpace> Space;
+  std::vector<std::array<double, 3>> From;
+  std::vector<std::array<double, 3>> To;
+  Box Made = NoVoxels;    // of this rank; may be empty
+  Box Counted = NoVoxels; // where it counts what is folded; may be empty
+};
+
+struct vtkLacunaRBFImageWarp::Outcome
+{
+  std::unique_ptr<WarpedPart> Part; // null: none is asked for
+  lacuna::RadialBasisReport Report;
+  Counts Folds;
+};
 
 //------------------------------------------------------------------------------
 vtkLacunaRBFImageWarp::vtkLacunaRBFImageWarp()
@@ -235,125 +290,22 @@ void vtkLacunaRBFImageWarp::Announce(const lacuna::Ports& ports)
 void vtkLacunaRBFImageWarp::Make(const lacuna::Ports& ports, lacuna::AlgorithmExecution& execution)
 {
   const lacuna::Ranks& ranks = ports.Ranks;
-  auto* image = ports.GetInput<vtkImageData>();
-  auto* landmarks = ports.GetInput<vtkDataSet>(1);
-  auto* targets = ports.GetInput<vtkDataSet>(2);
-  auto* output = ports.GetOutput<vtkImageData>();
   const bool wanted = ports.IsAsked();
-  vtkDataArray* scalars = nullptr;
-  std::optional<lacuna::VoxelSpace> found;
-  std::vector<std::array<double, 3>> from;
-  std::vector<std::array<double, 3>> to;
-  const auto prepare = [&]
-  {
-    lacuna::VolumeDirection::Check(image);
-    scalars = image->GetPointData()->GetScalars();
-    if (!scalars)
-    {
-      throw std::runtime_error("the image has no active point scalars");
-    }
-    if (scalars->GetName() && !std::strcmp(scalars->GetName(), lacuna::DepthMap::MaskName))
-    {
-      throw std::runtime_error("the image's active scalars are its vtkValidPointMask; choose the "
-                               "array that shall be warped as the active one");
-    }
-    if (landmarks->GetNumberOfPoints() != targets->GetNumberOfPoints())
-    {
-      std::ostringstream message;
-      message << "there are " << landmarks->GetNumberOfPoints() << " landmarks but "
-              << targets->GetNumberOfPoints() << " targets; they must be as many, in pairs of "
-              << "equal index";
-      throw std::runtime_error(message.str());
-    }
-    if (this->Kernel < ThinPlate || this->Kernel > Cubic)
-    {
-      throw std::runtime_error("Kernel is " + std::to_string(this->Kernel) +
-        "; it must be 0 (ThinPlate), 1 (Linear), 2 (Triharmonic) or 3 (Cubic)");
-    }
-    if (this->Interpolation < Nearest || this->Interpolation > CubicInterpolation)
-    {
-      throw std::runtime_error("Interpolation is " + std::to_string(this->Interpolation) +
-        "; it must be 0 (Nearest), 1 (Linear) or 2 (Cubic)");
-    }
-    if (!(this->Accuracy > 0) || !(this->Accuracy < 1))
-    {
-      throw std::runtime_error("Accuracy must be a number of voxels above 0 and below 1");
-    }
-    found.emplace(image);
-    from = found->GetPoints(landmarks);
-    to = found->GetPoints(targets);
-  };
-  ranks.Together(prepare); // what is wrong on one rank only may not keep the others waiting
-  const lacuna::VoxelSpace& space = *found;
-  lacuna::RadialBasisOptions options;
-  options.Kernel = static_cast<lacuna::RadialKernel>(this->Kernel);
-  options.Smoothing = this->Smoothing;
+  Task task;
+  // what is wrong on one rank only may not keep the others waiting
+  ranks.Together([&] { this->Prepare(ports, task); });
 
   // What is folded is known while what the mapping depends on stays the same, on all ranks.
-  std::vector<double> key(space.Extent, space.Extent + 6);
-  key.insert(key.end(), space.Spacing, space.Spacing + 3);
-  key.insert(key.end(), { static_cast<double>(this->Kernel), this->Smoothing, this->Accuracy });
-  for (const auto* points : { &from, &to })
-  {
-    for (const std::array<double, 3>& x : *points)
-    {
-      key.insert(key.end(), x.begin(), x.end());
-    }
-  }
+  const std::vector<double> key = this->GetKey(task);
   const bool known = ports.HaveMet || ranks.AllFine(key == this->FoldsOf);
   if (known && !wanted)
   {
     return;
   }
-  vtkInformation* info = ports.GetOutputInformation();
-  Box made{ 0, -1, 0, -1, 0, -1 };
-  if (wanted)
-  {
-    made = GetBox(info->Has(vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT())
-        ? info->Get(vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT())
-        : space.Extent,
-      space);
-  }
-  const Box counted = known ? Box{ 0, -1, 0, -1, 0, -1 } : GetShare(space, ranks);
-  std::unique_ptr<WarpedPart> part;
-  lacuna::RadialBasisReport report;
-  Counts counts;
-  const auto run = [&](auto mapping)
-  {
-    if (mapping.IsMirrored())
-    {
-      ThrowMirrored("the image");
-    }
-    report = mapping.GetReport();
-    counts = Warp(execution, mapping, made, part.get(), counted);
-  };
-  const auto warp = [&]
-  {
-    if (!IsEmpty(made))
-    {
-      double points = 1;
-      for (std::size_t c = 0; c < 3; ++c)
-      {
-        points *= static_cast<double>(made[2 * c + 1]) - made[2 * c] + 1;
-      }
-      lacuna::RequireMemory("the warped image",
-        points * (1.0 + scalars->GetDataTypeSize() * scalars->GetNumberOfComponents()));
-      part =
-        std::make_unique<WarpedPart>(image, scalars, this->Interpolation, this->OutsideValue, made);
-    }
-    switch (space.Axes.size())
-    {
-      case 3:
-        run(lacuna::LandmarkWarp<3>(execution, space, from, to, options, this->Accuracy));
-        break;
-      case 2:
-        run(lacuna::LandmarkWarp<2>(execution, space, from, to, options, this->Accuracy));
-        break;
-      default:
-        throw std::runtime_error("the image is but a row of voxels; warps are two- or "
-                                 "three-dimensional");
-    }
-  };
+  task.Made = wanted ? GetAsked(ports, *task.Space) : NoVoxels;
+  task.Counted = known ? NoVoxels : GetShare(*task.Space, ranks);
+  Outcome outcome;
+  const auto warp = [&] { this->Warp(execution, task, outcome); };
   if (known)
   {
     warp();
@@ -361,14 +313,115 @@ void vtkLacunaRBFImageWarp::Make(const lacuna::Ports& ports, lacuna::AlgorithmEx
   else
   {
     ranks.Together(warp);
-    std::uint64_t sums[3] = { counts.Folded, counts.InBox, counts.FoldedInBox };
+    std::uint64_t sums[3] = { outcome.Folds.Folded, outcome.Folds.InBox,
+      outcome.Folds.FoldedInBox };
     ranks.Sum(sums, 3);
     this->FoldedFraction =
-      static_cast<double>(sums[0]) / static_cast<double>(image->GetNumberOfPoints());
+      static_cast<double>(sums[0]) / static_cast<double>(task.Image->GetNumberOfPoints());
     this->FoldedInBox =
       static_cast<double>(sums[2]) / static_cast<double>(std::max<std::uint64_t>(1, sums[1]));
     this->FoldsOf = key;
   }
+  this->CheckFolds(outcome.Part != nullptr);
+  if (outcome.Part)
+  {
+    this->SetOutput(ports.GetOutput<vtkImageData>(), task, outcome);
+  }
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaRBFImageWarp::Prepare(const lacuna::Ports& ports, Task& task) const
+{
+  task.Image = ports.GetInput<vtkImageData>();
+  auto* landmarks = ports.GetInput<vtkDataSet>(1);
+  auto* targets = ports.GetInput<vtkDataSet>(2);
+  lacuna::VolumeDirection::Check(task.Image);
+  task.Scalars = FindScalars(task.Image);
+  if (landmarks->GetNumberOfPoints() != targets->GetNumberOfPoints())
+  {
+    std::ostringstream message;
+    message << "there are " << landmarks->GetNumberOfPoints() << " landmarks but "
+            << targets->GetNumberOfPoints() << " targets; they must be as many, in pairs of "
+            << "equal index";
+    throw std::runtime_error(message.str());
+  }
+  if (this->Kernel < ThinPlate || this->Kernel > Cubic)
+  {
+    throw std::runtime_error("Kernel is " + std::to_string(this->Kernel) +
+      "; it must be 0 (ThinPlate), 1 (Linear), 2 (Triharmonic) or 3 (Cubic)");
+  }
+  if (this->Interpolation < Nearest || this->Interpolation > CubicInterpolation)
+  {
+    throw std::runtime_error("Interpolation is " + std::to_string(this->Interpolation) +
+      "; it must be 0 (Nearest), 1 (Linear) or 2 (Cubic)");
+  }
+  if (!(this->Accuracy > 0) || !(this->Accuracy < 1))
+  {
+    throw std::runtime_error("Accuracy must be a number of voxels above 0 and below 1");
+  }
+  task.Space.emplace(task.Image);
+  task.From = task.Space->GetPoints(landmarks);
+  task.To = task.Space->GetPoints(targets);
+}
+
+//------------------------------------------------------------------------------
+std::vector<double> vtkLacunaRBFImageWarp::GetKey(const Task& task) const
+{
+  const lacuna::VoxelSpace& space = *task.Space;
+  std::vector<double> key(space.Extent, space.Extent + 6);
+  key.insert(key.end(), space.Spacing, space.Spacing + 3);
+  key.insert(key.end(), { static_cast<double>(this->Kernel), this->Smoothing, this->Accuracy });
+  for (const auto* points : { &task.From, &task.To })
+  {
+    for (const std::array<double, 3>& x : *points)
+    {
+      key.insert(key.end(), x.begin(), x.end());
+    }
+  }
+  return key;
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaRBFImageWarp::Warp(
+  lacuna::AlgorithmExecution& execution, const Task& task, Outcome& outcome) const
+{
+  if (!IsEmpty(task.Made))
+  {
+    RequireMemoryOfPart(task.Made, task.Scalars);
+    outcome.Part = std::make_unique<WarpedPart>(
+      task.Image, task.Scalars, this->Interpolation, this->OutsideValue, task.Made);
+  }
+  lacuna::RadialBasisOptions options;
+  options.Kernel = static_cast<lacuna::RadialKernel>(this->Kernel);
+  options.Smoothing = this->Smoothing;
+  const auto run = [&](auto mapping)
+  {
+    if (mapping.IsMirrored())
+    {
+      ThrowMirrored("the image");
+    }
+    outcome.Report = mapping.GetReport();
+    outcome.Folds = WarpAndCount(execution, mapping, task.Made, outcome.Part.get(), task.Counted);
+  };
+  switch (task.Space->Axes.size())
+  {
+    case 3:
+      run(lacuna::LandmarkWarp<3>(
+        execution, *task.Space, task.From, task.To, options, this->Accuracy));
+      break;
+    case 2:
+      run(lacuna::LandmarkWarp<2>(
+        execution, *task.Space, task.From, task.To, options, this->Accuracy));
+      break;
+    default:
+      throw std::runtime_error("the image is but a row of voxels; warps are two- or "
+                               "three-dimensional");
+  }
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaRBFImageWarp::CheckFolds(bool warns)
+{
   const bool swings = this->Kernel == Triharmonic || this->Kernel == Cubic;
   const std::string name = this->Kernel == Cubic ? "Cubic" : "Triharmonic";
   if (this->FoldedInBox > FoldedLimit)
@@ -377,11 +430,7 @@ void vtkLacunaRBFImageWarp::Make(const lacuna::Ports& ports, lacuna::AlgorithmEx
       std::to_string(std::lround(100 * this->FoldedInBox)) + " % of the box around the targets",
       swings ? "; or " + name + " swings there: take ThinPlate or Linear, or add Smoothing" : "");
   }
-  if (!part)
-  {
-    return; // the others have their parts
-  }
-  if (this->FoldedFraction > 0)
+  if (warns && this->FoldedFraction > 0)
   {
     std::string reasons;
     if (this->FoldedInBox > 0)
@@ -397,17 +446,24 @@ void vtkLacunaRBFImageWarp::Make(const lacuna::Ports& ports, lacuna::AlgorithmEx
                     << 100 * this->FoldedInBox << " % of those in the box around the targets, and "
                     << "the image is mirrored there. " << reasons);
   }
-  output->ShallowCopy(image);
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaRBFImageWarp::SetOutput(
+  vtkImageData* output, const Task& task, const Outcome& outcome) const
+{
+  output->ShallowCopy(task.Image);
   output->GetPointData()->Initialize(); // other arrays are not warped
   output->GetCellData()->Initialize();
   int extent[6];
   for (std::size_t c = 0; c < 6; ++c)
   {
-    extent[c] = space.Extent[c / 2 * 2] + made[c];
+    extent[c] = task.Space->Extent[c / 2 * 2] + task.Made[c];
   }
   output->SetExtent(extent);
-  output->GetPointData()->SetScalars(part->GetWarped());
-  output->GetPointData()->AddArray(part->GetValid());
+  output->GetPointData()->SetScalars(outcome.Part->GetWarped());
+  output->GetPointData()->AddArray(outcome.Part->GetValid());
+  const lacuna::RadialBasisReport& report = outcome.Report;
   lacuna::FieldData::Set(output, "NodeCount", { static_cast<double>(report.NodeCount) }, 1);
   lacuna::FieldData::Set(output, "Residual", { report.Residual }, 1);
   lacuna::FieldData::Set(output, "FoldedFraction", { this->FoldedFraction }, 1);

@@ -45,6 +45,7 @@
 #include <vector>
 
 class vtkAlgorithmOutput;
+class vtkImageData;
 namespace lacuna
 {
 class AlgorithmExecution;
@@ -122,6 +123,15 @@ protected:
 private:
   vtkLacunaRBFImageWarp(const vtkLacunaRBFImageWarp&) = delete;
   void operator=(const vtkLacunaRBFImageWarp&) = delete;
+
+  struct Task;    ///< what is warped, by which pairs
+  struct Outcome; ///< and what becomes of it
+
+  void Prepare(const lacuna::Ports& ports, Task& task) const; ///< throws for what cannot be warped
+  std::vector<double> GetKey(const Task& task) const;         ///< what the mapping depends on
+  void Warp(lacuna::AlgorithmExecution& execution, const Task& task, Outcome& outcome) const;
+  void CheckFolds(bool warns); ///< throws for many, warns of some
+  void SetOutput(vtkImageData* output, const Task& task, const Outcome& outcome) const;
 
   int Kernel = ThinPlate;
   double Smoothing = 0;

@@ -273,42 +273,10 @@ void vtkLacunaRBFInterpolator::Make(
   auto* output = ports.GetOutput<vtkImageData>();
   output->GetFieldData()->Initialize(); // VTK passes the points' own
   lacuna::VolumeDirection::Check(points);
-  if (this->Kernel < ThinPlate || this->Kernel > Multiquadric)
-  {
-    throw std::runtime_error("Kernel is " + std::to_string(this->Kernel) +
-      "; it must be 0 (ThinPlate), 1 (Linear), 2 (Triharmonic), 3 (Cubic), 4 (Gaussian) or 5 "
-      "(Multiquadric)");
-  }
-  if (this->Solver < Auto || this->Solver > Fast)
-  {
-    throw std::runtime_error("Solver is " + std::to_string(this->Solver) +
-      "; it must be 0 (Auto), 1 (Direct) or 2 (Fast)");
-  }
-  if (!(this->CenterTolerance >= 0) || !std::isfinite(this->CenterTolerance))
-  {
-    throw std::runtime_error("CenterTolerance must be a finite number >= 0");
-  }
-  if (this->CenterTolerance > 0 && !this->ErrorArray.empty())
-  {
-    throw std::runtime_error("ErrorArray cannot be used together with CenterTolerance, which "
-                             "holds for all values alike: empty one, or set the other to 0");
-  }
+  this->CheckProperties();
   const OutputGrid to(points, this->OutputSpacing, this->OutputBounds);
   vtkDataArray* array = FindArray(points, this->ScalarArray, "ScalarArray");
-  lacuna::RadialBasisOptions options;
-  options.Kernel = static_cast<lacuna::RadialKernel>(this->Kernel);
-  options.Shape = this->KernelLength;
-  options.Smoothing = this->Smoothing;
-  options.Accuracy = this->Accuracy;
-  options.Solver = static_cast<lacuna::RadialSolver>(this->Solver);
-  if (!this->ErrorArray.empty())
-  {
-    vtkDataArray* errors = FindArray(points, this->ErrorArray, "ErrorArray");
-    for (vtkIdType i = 0; i < errors->GetNumberOfTuples(); ++i)
-    {
-      options.Errors.push_back(errors->GetComponent(i, 0));
-    }
-  }
+  const lacuna::RadialBasisOptions options = this->GetOptions(points);
   int whole[6];
   int piece[6]; // of ranks, which share the evaluation: each fits for itself
   vtkInformation* info = ports.GetOutputInformation();
@@ -346,6 +314,51 @@ void vtkLacunaRBFInterpolator::Make(
                                "does not determine a function in two or three dimensions");
   }
   output->GetPointData()->SetScalars(image);
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaRBFInterpolator::CheckProperties() const
+{
+  if (this->Kernel < ThinPlate || this->Kernel > Multiquadric)
+  {
+    throw std::runtime_error("Kernel is " + std::to_string(this->Kernel) +
+      "; it must be 0 (ThinPlate), 1 (Linear), 2 (Triharmonic), 3 (Cubic), 4 (Gaussian) or 5 "
+      "(Multiquadric)");
+  }
+  if (this->Solver < Auto || this->Solver > Fast)
+  {
+    throw std::runtime_error("Solver is " + std::to_string(this->Solver) +
+      "; it must be 0 (Auto), 1 (Direct) or 2 (Fast)");
+  }
+  if (!(this->CenterTolerance >= 0) || !std::isfinite(this->CenterTolerance))
+  {
+    throw std::runtime_error("CenterTolerance must be a finite number >= 0");
+  }
+  if (this->CenterTolerance > 0 && !this->ErrorArray.empty())
+  {
+    throw std::runtime_error("ErrorArray cannot be used together with CenterTolerance, which "
+                             "holds for all values alike: empty one, or set the other to 0");
+  }
+}
+
+//------------------------------------------------------------------------------
+lacuna::RadialBasisOptions vtkLacunaRBFInterpolator::GetOptions(vtkDataSet* points) const
+{
+  lacuna::RadialBasisOptions options;
+  options.Kernel = static_cast<lacuna::RadialKernel>(this->Kernel);
+  options.Shape = this->KernelLength;
+  options.Smoothing = this->Smoothing;
+  options.Accuracy = this->Accuracy;
+  options.Solver = static_cast<lacuna::RadialSolver>(this->Solver);
+  if (!this->ErrorArray.empty())
+  {
+    vtkDataArray* errors = FindArray(points, this->ErrorArray, "ErrorArray");
+    for (vtkIdType i = 0; i < errors->GetNumberOfTuples(); ++i)
+    {
+      options.Errors.push_back(errors->GetComponent(i, 0));
+    }
+  }
+  return options;
 }
 
 //------------------------------------------------------------------------------

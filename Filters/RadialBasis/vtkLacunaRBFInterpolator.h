@@ -39,6 +39,13 @@
 
 #include <string> // for ivars
 
+class vtkDataSet;
+
+namespace lacuna
+{
+struct RadialBasisOptions;
+}
+
 class VTKLACUNAFILTERSRADIALBASIS_EXPORT vtkLacunaRBFInterpolator
   : public vtkLacunaAlgorithmOf(vtkImageAlgorithm)
 {
@@ -152,6 +159,9 @@ protected:
 private:
   vtkLacunaRBFInterpolator(const vtkLacunaRBFInterpolator&) = delete;
   void operator=(const vtkLacunaRBFInterpolator&) = delete;
+
+  void CheckProperties() const;
+  lacuna::RadialBasisOptions GetOptions(vtkDataSet* points) const;
 
   std::string ScalarArray;
   std::string ErrorArray;

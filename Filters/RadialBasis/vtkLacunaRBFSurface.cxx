@@ -144,6 +144,79 @@ std::vector<double> GetResiduals(lacuna::Execution& execution,
   }
   return values;
 }
+
+struct Misses
+{
+  explicit Misses(const std::vector<double>& residuals)
+  {
+    double sum = 0;
+    for (const double r : residuals)
+    {
+      sum += r * r / static_cast<double>(residuals.size());
+      this->Largest = std::max(this->Largest, std::abs(r));
+    }
+    this->RootMeanSquare = std::sqrt(sum);
+  }
+
+  double RootMeanSquare;
+  double Largest = 0;
+};
+
+struct InputPoints
+{
+  const std::vector<Vec3>& Places;
+  std::vector<double> Residuals;
+  double Spacing;
+};
+
+// What the surface's points have from the nearest ones of the input.
+void AddPointData(lacuna::Execution& execution, vtkPolyData* output,
+  const std::vector<Vec3>& places, const InputPoints& input)
+{
+  const auto n = static_cast<vtkIdType>(places.size());
+  vtkFloatArray* distance = AddArray(output, "Distance", n);
+  vtkFloatArray* residual = AddArray(output, "Residual", n);
+  vtkFloatArray* support = AddArray(output, "Support", n);
+  const lacuna::PointNeighbors neighbors(input.Places);
+  execution.For(n, 1024,
+    [&](std::int64_t begin, std::int64_t end)
+    {
+      std::vector<std::size_t> nearest;
+      std::vector<double> away;
+      for (std::int64_t i = begin; i < end; ++i)
+      {
+        neighbors.Find(places[i], 1, nearest, &away);
+        distance->SetValue(i, static_cast<float>(away[0]));
+        residual->SetValue(i, static_cast<float>(input.Residuals[nearest[0]]));
+        support->SetValue(i, static_cast<float>(input.Spacing > 0 ? away[0] / input.Spacing : 0));
+      }
+    });
+}
+
+void SetNumber(vtkPolyData* output, const char* name, double value)
+{
+  lacuna::FieldData::Set(output, name, { value }, 1);
+}
+
+void AddReport(vtkPolyData* output, const lacuna::BlendedSplineReport& report, bool hasPrior)
+{
+  if (hasPrior)
+  {
+    SetNumber(output, "PriorUsed", report.UsesPrior ? 1 : 0);
+  }
+  SetNumber(output, "PointError", report.PointError);
+  SetNumber(output, "NormalError", std::atan(report.Spline.NormalError) * 180 / std::acos(-1.0));
+  SetNumber(output, "CenterCount", static_cast<double>(report.Centers));
+}
+
+void RequireMemoryOfSurface(std::size_t points, double spacing, double edge)
+{
+  // each point stands for a square of the spacing
+  const double squares = static_cast<double>(points) * spacing * spacing / (edge * edge);
+  constexpr double bytesPerSquare = 1500; // cells, nodes and triangles
+  lacuna::RequireMemory(
+    "a surface of such small triangles (choose a larger OutputSpacing)", bytesPerSquare * squares);
+}
 }
 
 vtkLacunaRBFSurface::vtkLacunaRBFSurface()
@@ -247,14 +320,82 @@ void vtkLacunaRBFSurface::Make(const lacuna::Ports& ports, lacuna::AlgorithmExec
 {
   auto* distances = ports.GetOutput<vtkImageData>(1);
   distances->GetFieldData()->Initialize(); // VTK passes that of the input, which may be turned
+  this->CheckProperties();
+  const auto start = std::chrono::steady_clock::now();
+  execution.SetStage(0, 0.05);
+  lacuna::SurfacePoints collected = this->CollectPoints(ports, execution);
+  lacuna::OrientedPoints& points = collected.Data;
+  const std::array<double, 6> own = GetBounds(points.Points, collected.Inside);
+  this->CheckDistanceGrid(own);
+  const std::unique_ptr<const lacuna::SurfacePrior> prior =
+    this->FindPrior(ports, GetExtent(own), collected.Warnings);
+  const double spacing = FindSpacing(execution, points.Points);
+  this->CheckNormals(execution, points, 0.5 * spacing);
+
+  // the error of a volume takes as many fits again
+  const double fitEnd = collected.HasOutlines ? 0.35 : 0.65;
+  const double followEnd = fitEnd + 0.25;
+  execution.SetStage(0.05, fitEnd);
+  const lacuna::BlendedSplineOptions options = this->GetFitOptions(collected);
+  if (collected.HasOutlines)
+  {
+    lacuna::FindOutlineNormals(execution, points, options);
+  }
+  else
+  {
+    points.Free.clear();
+  }
+  const lacuna::BlendedSpline fit(execution, points, options, prior.get());
+  this->CheckSides(fit.GetReport());
+
+  execution.SetStage(fitEnd, followEnd);
+  const lacuna::SurfaceFollowerOptions follow = this->GetFollowerOptions(collected, own, spacing);
+  RequireMemoryOfSurface(points.Points.size(), spacing, follow.EdgeLength);
+  const lacuna::FollowedSurface followed =
+    lacuna::FollowSurface(execution, fit, points.Points, follow);
+  const bool isClosed = this->CheckSurface(followed, collected.Warnings);
+
+  execution.SetStage(followEnd, followEnd + 0.05);
+  const InputPoints input{ points.Points, GetResiduals(execution, fit, points.Points), spacing };
+  auto* output = ports.GetOutput<vtkPolyData>();
+  SetSurface(output, followed);
+  AddPointData(execution, output, followed.Surface.Points, input);
+  if (isClosed)
+  {
+    SetNumber(output, "SurfaceVolume", followed.Surface.GetVolume() / 1000);
+  }
+  const Misses misses(input.Residuals);
+  this->CheckMisses(misses.RootMeanSquare, GetExtent(own));
+  if (collected.HasOutlines && isClosed)
+  {
+    execution.SetStage(followEnd + 0.05, 0.95);
+    const double error = lacuna::EstimateVolumeError(
+      execution, points, options, fit.GetReport().Spline, followed.Surface);
+    SetNumber(output, "SurfaceVolumeError", error / 1000);
+  }
+  SetNumber(output, "SurfaceArea", followed.Surface.GetArea());
+  SetNumber(output, "ResidualRMS", misses.RootMeanSquare);
+  SetNumber(output, "ResidualMaximum", misses.Largest);
+  AddReport(output, fit.GetReport(), prior != nullptr);
+  SetNumber(output, "FitTime",
+    std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+  if (this->DistanceSpacing > 0)
+  {
+    execution.SetStage(0.95, 1);
+    this->SetDistances(execution, followed.Surface, distances);
+  }
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaRBFSurface::CheckProperties() const
+{
   if (this->Kernel != Biharmonic && this->Kernel != Triharmonic)
   {
     throw std::runtime_error("Kernel is " + std::to_string(this->Kernel) +
       "; it must be 0 (Biharmonic) or 1 (Triharmonic)");
   }
-  const std::pair<const char*, double> positive[] = { { "Accuracy", this->Accuracy },
-    { "Tolerance", this->Tolerance } };
-  for (const auto& property : positive)
+  for (const auto& property : { std::pair<const char*, double>{ "Accuracy", this->Accuracy },
+         { "Tolerance", this->Tolerance } })
   {
     if (!(property.second > 0) || !std::isfinite(property.second))
     {
@@ -271,8 +412,12 @@ void vtkLacunaRBFSurface::Make(const lacuna::Ports& ports, lacuna::AlgorithmExec
         std::string(property.first) + " must be a finite number >= 0, in mm");
     }
   }
-  const auto start = std::chrono::steady_clock::now();
-  execution.SetStage(0, 0.05);
+}
+
+//------------------------------------------------------------------------------
+lacuna::SurfacePoints vtkLacunaRBFSurface::CollectPoints(
+  const lacuna::Ports& ports, lacuna::Execution& execution)
+{
   lacuna::SurfacePoints collected;
   collected.ErrorArray = this->ErrorArray;
   collected.SideArray = this->SideArray;
@@ -285,61 +430,59 @@ void vtkLacunaRBFSurface::Make(const lacuna::Ports& ports, lacuna::AlgorithmExec
     }
     collected.Add(execution, data, i + 1);
   }
-  lacuna::OrientedPoints& points = collected.Data;
-  if (points.Points.empty())
+  if (collected.Data.Points.empty())
   {
     throw std::runtime_error("the input has no points of a surface");
   }
   collected.Check();
-  const std::array<double, 6> own = GetBounds(points.Points, collected.Inside);
-  const double extent = GetExtent(own);
-  this->CheckDistanceGrid(own);
-  std::unique_ptr<lacuna::SurfacePrior> prior;
+  return collected;
+}
+
+//------------------------------------------------------------------------------
+std::unique_ptr<const lacuna::SurfacePrior> vtkLacunaRBFSurface::FindPrior(
+  const lacuna::Ports& ports, double extent, std::vector<std::string>& warnings)
+{
   if (this->PriorFunction)
   {
-    prior = std::make_unique<lacuna::SurfacePrior>(this->PriorFunction, extent);
+    return std::make_unique<lacuna::SurfacePrior>(this->PriorFunction, extent);
   }
-  else if (this->GetNumberOfInputConnections(1) > 0)
+  if (this->GetNumberOfInputConnections(1) > 0)
   {
     auto* data = ports.GetInput<vtkDataSet>(1);
     if (data && data->GetNumberOfPoints() > 0)
     {
-      prior = std::make_unique<lacuna::SurfacePrior>(data);
+      return std::make_unique<lacuna::SurfacePrior>(data);
     }
-    else
-    {
-      collected.Warnings.push_back("PriorSurface has no points and does not count");
-    }
+    warnings.push_back("PriorSurface has no points and does not count");
   }
-  const double spacing = FindSpacing(execution, points.Points);
-  this->CheckNormals(execution, points, 0.5 * spacing);
+  return nullptr;
+}
 
-  // the error of a volume takes as many fits again
-  const double fitEnd = collected.HasOutlines ? 0.35 : 0.65;
-  const double followEnd = fitEnd + 0.25;
-  execution.SetStage(0.05, fitEnd);
+//------------------------------------------------------------------------------
+lacuna::BlendedSplineOptions vtkLacunaRBFSurface::GetFitOptions(
+  const lacuna::SurfacePoints& collected) const
+{
   lacuna::BlendedSplineOptions options;
   options.Kernel =
     this->Kernel == Triharmonic ? lacuna::RadialKernel::Cubic : lacuna::RadialKernel::Linear;
   options.PointError = this->Smoothing;
   options.Accuracy = this->Accuracy;
   options.LeastNormalError = collected.HasEstimatedNormals ? EstimatedNormalError : 0;
-  if (!collected.HasOutlines)
-  {
-    points.Free.clear();
-  }
-  else
+  if (collected.HasOutlines)
   {
     options.LeastNormalError = std::max(options.LeastNormalError, lacuna::OutlineNormalError);
-    lacuna::FindOutlineNormals(execution, points, options);
   }
   options.Inside = collected.Inside;
   options.Outside = collected.Outside;
-  const lacuna::BlendedSpline fit(execution, points, options, prior.get());
-  this->CheckSides(fit.GetReport());
+  return options;
+}
 
-  execution.SetStage(fitEnd, followEnd);
+//------------------------------------------------------------------------------
+lacuna::SurfaceFollowerOptions vtkLacunaRBFSurface::GetFollowerOptions(
+  lacuna::SurfacePoints& collected, const std::array<double, 6>& own, double spacing) const
+{
   lacuna::SurfaceFollowerOptions follow;
+  const double extent = GetExtent(own);
   // points along outlines are denser than these
   const double finest = collected.HasOutlines ? FinestOfOutlines : FinestEdge;
   follow.EdgeLength = this->OutputSpacing > 0
@@ -351,12 +494,6 @@ void vtkLacunaRBFSurface::Make(const lacuna::Ports& ports, lacuna::AlgorithmExec
     collected.Warnings.push_back("OutputSpacing is more than a tenth of the points' extent: the "
                                  "triangles cut off curves, and the volume is theirs");
   }
-  // each point stands for a square of the spacing
-  const double squares = static_cast<double>(points.Points.size()) * spacing * spacing /
-    (follow.EdgeLength * follow.EdgeLength);
-  constexpr double bytesPerSquare = 1500; // cells, nodes and triangles
-  lacuna::RequireMemory(
-    "a surface of such small triangles (choose a larger OutputSpacing)", bytesPerSquare * squares);
   follow.Cap = this->CapBoundary;
   for (int c = 0; c < 3; ++c)
   {
@@ -365,76 +502,7 @@ void vtkLacunaRBFSurface::Make(const lacuna::Ports& ports, lacuna::AlgorithmExec
     follow.Bounds[2 * c + 1] =
       given ? this->OutputBounds[2 * c + 1] : own[2 * c + 1] + BoundsMargin * extent;
   }
-  const lacuna::FollowedSurface followed =
-    lacuna::FollowSurface(execution, fit, points.Points, follow);
-  const bool isClosed = this->CheckSurface(followed, collected.Warnings);
-
-  execution.SetStage(followEnd, followEnd + 0.05);
-  const std::vector<double> residuals = GetResiduals(execution, fit, points.Points);
-  auto* output = ports.GetOutput<vtkPolyData>();
-  SetSurface(output, followed);
-  const vtkIdType n = output->GetNumberOfPoints();
-  vtkFloatArray* distance = AddArray(output, "Distance", n);
-  vtkFloatArray* residual = AddArray(output, "Residual", n);
-  vtkFloatArray* support = AddArray(output, "Support", n);
-  const lacuna::PointNeighbors neighbors(points.Points);
-  execution.For(n, 1024,
-    [&](std::int64_t begin, std::int64_t end)
-    {
-      std::vector<std::size_t> nearest;
-      std::vector<double> away;
-      for (std::int64_t i = begin; i < end; ++i)
-      {
-        neighbors.Find(followed.Surface.Points[i], 1, nearest, &away);
-        distance->SetValue(i, static_cast<float>(away[0]));
-        residual->SetValue(i, static_cast<float>(residuals[nearest[0]]));
-        support->SetValue(i, static_cast<float>(spacing > 0 ? away[0] / spacing : 0));
-      }
-    });
-  double sum = 0;
-  double largest = 0;
-  for (const double r : residuals)
-  {
-    sum += r * r / static_cast<double>(residuals.size());
-    largest = std::max(largest, std::abs(r));
-  }
-  const auto set = [output](const char* name, double value)
-  { lacuna::FieldData::Set(output, name, { value }, 1); };
-  const lacuna::BlendedSplineReport& report = fit.GetReport();
-  if (isClosed)
-  {
-    set("SurfaceVolume", followed.Surface.GetVolume() / 1000);
-  }
-  if (std::sqrt(sum) > ManyMissed * extent)
-  {
-    vtkWarningMacro(<< "the surface misses the points by " << std::sqrt(sum)
-                    << " mm (RMS): there are too few, or their normals or the outlines "
-                       "contradict each other. Colour by Residual to see where");
-  }
-  if (collected.HasOutlines && isClosed)
-  {
-    execution.SetStage(followEnd + 0.05, 0.95);
-    set("SurfaceVolumeError",
-      lacuna::EstimateVolumeError(
-        execution, points, options, fit.GetReport().Spline, followed.Surface) /
-        1000);
-  }
-  set("SurfaceArea", followed.Surface.GetArea());
-  set("ResidualRMS", std::sqrt(sum));
-  set("ResidualMaximum", largest);
-  if (prior)
-  {
-    set("PriorUsed", fit.GetReport().UsesPrior ? 1 : 0);
-  }
-  set("PointError", report.PointError);
-  set("NormalError", std::atan(report.Spline.NormalError) * 180 / std::acos(-1.0));
-  set("CenterCount", static_cast<double>(report.Centers));
-  set("FitTime", std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
-  if (this->DistanceSpacing > 0)
-  {
-    execution.SetStage(0.95, 1);
-    this->SetDistances(execution, followed.Surface, distances);
-  }
+  return follow;
 }
 
 //------------------------------------------------------------------------------
@@ -505,6 +573,17 @@ void vtkLacunaRBFSurface::CheckSides(const lacuna::BlendedSplineReport& report)
                     << ", " << x[2]
                     << ") mm: points of the surface contradict it. Correct one of them, or give a "
                        "larger Smoothing");
+  }
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaRBFSurface::CheckMisses(double rootMeanSquare, double extent)
+{
+  if (rootMeanSquare > ManyMissed * extent)
+  {
+    vtkWarningMacro(<< "the surface misses the points by " << rootMeanSquare
+                    << " mm (RMS): there are too few, or their normals or the outlines "
+                       "contradict each other. Colour by Residual to see where");
   }
 }
 

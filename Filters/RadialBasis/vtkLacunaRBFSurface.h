@@ -55,15 +55,20 @@
 #include "vtkSmartPointer.h" // for ivars
 
 #include <array>  // for bounds
+#include <memory> // for the prior
 #include <string> // for ivars
 #include <vector> // for warnings
 
 namespace lacuna
 {
 class Execution;
+class SurfacePoints;
+class SurfacePrior;
+struct BlendedSplineOptions;
 struct BlendedSplineReport;
 struct FollowedSurface;
 struct OrientedPoints;
+struct SurfaceFollowerOptions;
 struct TriangleSurface;
 }
 
@@ -186,18 +191,27 @@ protected:
   std::string Parameters(int port) const override;
 
 private:
-  void CheckNormals(
-    lacuna::Execution& execution, const lacuna::OrientedPoints& points, double spacing);
-  /// Warns, or throws; returns whether it is closed.
-  bool CheckSurface(
-    const lacuna::FollowedSurface& followed, const std::vector<std::string>& warnings);
-
   vtkLacunaRBFSurface(const vtkLacunaRBFSurface&) = delete;
   void operator=(const vtkLacunaRBFSurface&) = delete;
 
   bool HasOutputBounds() const;
+  void CheckProperties() const;
   void CheckDistanceGrid(const std::array<double, 6>& own); ///< own: bounds of the points
+  void CheckNormals(
+    lacuna::Execution& execution, const lacuna::OrientedPoints& points, double spacing);
   void CheckSides(const lacuna::BlendedSplineReport& report);
+  /// Warns, or throws; returns whether it is closed.
+  bool CheckSurface(
+    const lacuna::FollowedSurface& followed, const std::vector<std::string>& warnings);
+  void CheckMisses(double rootMeanSquare, double extent);
+
+  lacuna::SurfacePoints CollectPoints(const lacuna::Ports& ports, lacuna::Execution& execution);
+  std::unique_ptr<const lacuna::SurfacePrior> FindPrior(
+    const lacuna::Ports& ports, double extent, std::vector<std::string>& warnings);
+  lacuna::BlendedSplineOptions GetFitOptions(const lacuna::SurfacePoints& collected) const;
+  /// Adds a warning to collected.
+  lacuna::SurfaceFollowerOptions GetFollowerOptions(
+    lacuna::SurfacePoints& collected, const std::array<double, 6>& own, double spacing) const;
   void SetDistances(
     lacuna::Execution& execution, const lacuna::TriangleSurface& surface, vtkImageData* distances);
 

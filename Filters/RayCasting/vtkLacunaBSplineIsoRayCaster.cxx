@@ -91,6 +91,47 @@ public:
     vtkImageData* Output;
   };
 
+  static void CheckIsoValues(vtkLacunaBSplineIsoRayCaster* self)
+  {
+    if (self->IsoValues.empty())
+    {
+      throw std::runtime_error("no iso-value is given: add one to IsoValues");
+    }
+    for (const double isoValue : self->IsoValues)
+    {
+      if (!std::isfinite(isoValue))
+      {
+        throw std::runtime_error("IsoValues is " + lacuna::FormatValue(self->IsoValues) +
+          "; give grey levels that are finite numbers");
+      }
+    }
+  }
+
+  static void RequireMemory(vtkLacunaBSplineIsoRayCaster* self, vtkImageData* map, bool hasStart)
+  {
+    // depths and normals of each, mask and thickness of the first
+    const double bytes = (sizeof(double) + 3 * sizeof(float)) * self->IsoValues.size() +
+      sizeof(char) + (self->ComputeThickness ? sizeof(double) : 0) +
+      (hasStart ? sizeof(double) : 0);
+    lacuna::RequireMemory(
+      "this part of the depth map, " + std::to_string(map->GetNumberOfPoints()) + " pixels,",
+      static_cast<double>(map->GetNumberOfPoints()) * bytes);
+  }
+
+  /// Null: nothing is cut away.
+  static std::unique_ptr<lacuna::CutRegion> MakeCutAway(
+    vtkLacunaBSplineIsoRayCaster* self, vtkImageData* volume)
+  {
+    if (!self->CutAway)
+    {
+      return nullptr;
+    }
+    const View::Frame frame = View::FrameOf(volume);
+    return lacuna::CutAway::MakeRegion(self->CutAway,
+      0.5 * lacuna::SmallestEdgeOf(frame.IndexToWorld),
+      lacuna::CornersOf(frame.IndexToWorld, frame.Size));
+  }
+
   static vtkDataArray* FindScalars(vtkLacunaBSplineIsoRayCaster* self, vtkImageData* input)
   {
     vtkPointData* inputData = input->GetPointData();
@@ -354,18 +395,7 @@ void vtkLacunaBSplineIsoRayCaster::Make(
   auto* input = ports.GetInput<vtkImageData>();
   auto* output = ports.GetOutput<vtkImageData>();
   vtkDataArray* scalars = Internals::FindScalars(this, input);
-  if (this->IsoValues.empty())
-  {
-    throw std::runtime_error("no iso-value is given: add one to IsoValues");
-  }
-  for (const double isoValue : this->IsoValues)
-  {
-    if (!std::isfinite(isoValue))
-    {
-      throw std::runtime_error("IsoValues is " + lacuna::FormatValue(this->IsoValues) +
-        "; give grey levels that are finite numbers");
-    }
-  }
+  Internals::CheckIsoValues(this);
 
   const lacuna::ImagePlane plane = Internals::MakePlane(this, input);
   execution.SetStage(0, 0.1);
@@ -390,29 +420,16 @@ void vtkLacunaBSplineIsoRayCaster::Make(
   request.CapBoundary = this->CapBoundary;
   request.Normals = this->NormalMethod == Analytic ? lacuna::SurfaceNormal::Analytic
                                                    : lacuna::SurfaceNormal::GreyLevel;
-  // depths and normals of each, mask and thickness of the first
-  const double bytes = (sizeof(double) + 3 * sizeof(float)) * this->IsoValues.size() +
-    sizeof(char) + (this->ComputeThickness ? sizeof(double) : 0) +
-    (ports.GetInput<vtkImageData>(1) ? sizeof(double) : 0);
-  lacuna::RequireMemory(
-    "this part of the depth map, " + std::to_string(output->GetNumberOfPoints()) + " pixels,",
-    static_cast<double>(output->GetNumberOfPoints()) * bytes);
-  std::vector<double> startDepths;
   auto* start = ports.GetInput<vtkImageData>(1);
+  Internals::RequireMemory(this, output, start != nullptr);
+  std::vector<double> startDepths;
   if (start)
   {
     startDepths = View::StartDepths(start, plane, request.Eye, extent.data());
     request.StartDepth = startDepths.data();
   }
-  std::unique_ptr<lacuna::CutRegion> cutAway;
-  if (this->CutAway)
-  {
-    const View::Frame frame = View::FrameOf(input);
-    cutAway =
-      lacuna::CutAway::MakeRegion(this->CutAway, 0.5 * lacuna::SmallestEdgeOf(frame.IndexToWorld),
-        lacuna::CornersOf(frame.IndexToWorld, frame.Size));
-    request.CutAway = cutAway.get();
-  }
+  const std::unique_ptr<lacuna::CutRegion> cutAway = Internals::MakeCutAway(this, input);
+  request.CutAway = cutAway.get();
   const std::size_t count = this->IsoValues.size();
   for (std::size_t i = 0; i < count; ++i)
   {

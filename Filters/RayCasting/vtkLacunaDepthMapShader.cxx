@@ -6,11 +6,14 @@
 
 #include "lacunaArrays.h"
 #include "lacunaCasterView.h"
+#include "lacunaCutAway.h"
 #include "lacunaDepthMap.h"
+#include "lacunaFieldData.h"
 #include "lacunaFunctionText.h"
 #include "lacunaMapDepths.h"
 #include "lacunaParameterText.h"
-#include "lacunaShadows.h"
+#include "lacunaShadowCaster.h"
+#include "lacunaVolumeCaster.h"
 #include "vtkDataArray.h"
 #include "vtkFloatArray.h"
 #include "vtkImageData.h"
@@ -27,7 +30,10 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <cstdlib>
+#include <memory>
 #include <stdexcept>
+#include <string>
 
 namespace
 {
@@ -59,28 +65,87 @@ lacuna::Sphere CircumscribedSphere(vtkImageData* volume)
   }
   return sphere;
 }
+
+constexpr double BiasPerVoxel = 0.1;
+
+vtkDataArray* FindScalars(vtkImageData* volume, const std::string& name)
+{
+  vtkPointData* data = volume->GetPointData();
+  vtkDataArray* scalars = name.empty() ? data->GetScalars() : data->GetArray(name.c_str());
+  if (!scalars || scalars->GetNumberOfComponents() != 1 ||
+    scalars->GetNumberOfTuples() != volume->GetNumberOfPoints())
+  {
+    throw std::runtime_error((name.empty() ? std::string("the volume has no active point scalars")
+                                           : "the volume has no point array '" + name + "'") +
+      " of one grey level per voxel, which shadows need");
+  }
+  return scalars;
+}
+
+/// The iso-value of the surface whose depths are in an array: number k of IsoValues for Depth_k, the
+/// first for all others.
+double IsoValueOf(vtkImageData* map, const std::string& depthArray)
+{
+  vtkDataArray* values = lacuna::FieldData::Find(map, lacuna::DepthMap::IsoValuesName, 1, -1);
+  const std::string further = std::string(lacuna::DepthMap::DepthName) + "_";
+  const long number =
+    depthArray.rfind(further, 0) == 0 ? std::atol(depthArray.c_str() + further.size()) : 0;
+  if (!values || number < 0 || number >= values->GetNumberOfTuples())
+  {
+    throw std::runtime_error(std::string("the depth map does not say in field data array '") +
+      lacuna::DepthMap::IsoValuesName + "' at which grey level '" + depthArray +
+      "' was found, which shadows need: disconnect the volume or turn CastShadows off");
+  }
+  return values->GetComponent(number, 0);
+}
 }
 
 //------------------------------------------------------------------------------
 class vtkLacunaDepthMapShader::Internals
 {
 public:
-  lacuna::Shadows Shadows;
   vtkSmartPointer<vtkImplicitFunction> CutAway;
 
+  /// What of a volume throws shadows on a map. Throws when the volume has no grey levels or the map does
+  /// not say at which of them it was made. The result refers to this object, and holds while volume does.
   lacuna::ShadowCaster PrepareShadows(vtkLacunaDepthMapShader* self, vtkImageData* map,
     vtkImageData* volume, lacuna::AlgorithmExecution& execution)
   {
-    lacuna::Shadows::Settings settings;
-    settings.DepthArray = self->DepthArray;
-    settings.VolumeArray = self->VolumeArray;
-    settings.Interpolation = self->Interpolation;
-    settings.SolidSide = self->SolidSide;
-    settings.Bias = self->ShadowBias;
-    settings.CutAway = this->CutAway;
-    settings.CapCutAway = self->CapCutAway;
-    settings.CapBoundary = self->CapBoundary;
-    return this->Shadows.Prepare(self, map, volume, settings, execution);
+    vtkDataArray* scalars = FindScalars(volume, self->VolumeArray);
+    const lacuna::IsoRayCaster& caster =
+      this->ShadowVolume.Prepare(volume, scalars, self->Interpolation, self->SolidSide, execution);
+    lacuna::ShadowCaster shadows;
+    shadows.Caster = &caster;
+    shadows.IsoValue = IsoValueOf(map, self->DepthArray);
+    if (caster.GetMinimum() > caster.GetMaximum())
+    {
+      vtkWarningWithObjectMacro(
+        self, "no voxel of the volume is a finite number: it throws no shadows");
+    }
+    else if (!(shadows.IsoValue >= caster.GetMinimum() && shadows.IsoValue <= caster.GetMaximum()))
+    {
+      const bool mayOvershoot =
+        self->Interpolation == static_cast<int>(lacuna::FieldInterpolation::InterpolatingBSpline);
+      vtkWarningWithObjectMacro(self,
+        "the map's iso-value " << shadows.IsoValue
+                               << " lies outside the volume's values, which range "
+                               << "from " << caster.GetMinimum() << " to " << caster.GetMaximum()
+                               << (mayOvershoot ? ": only the spline's overshoot throws shadows"
+                                                : ": it throws no shadows"));
+    }
+    const lacuna::VoxelVolume& voxels = caster.GetVolume();
+    const double edge = lacuna::SmallestEdgeOf(voxels.IndexToWorld);
+    shadows.Bias = self->ShadowBias > 0 ? self->ShadowBias : BiasPerVoxel * edge;
+    this->ShadowCutAway.reset();
+    if (this->CutAway)
+    {
+      this->ShadowCutAway = lacuna::CutAway::MakeRegion(
+        this->CutAway, 0.5 * edge, lacuna::CornersOf(voxels.IndexToWorld, voxels.Size));
+    }
+    shadows.CutAway = this->ShadowCutAway.get();
+    shadows.CapCutAway = self->CapCutAway;
+    shadows.CapBoundary = self->CapBoundary;
+    return shadows;
   }
 
   static lacuna::ShadingSettings MakeSettings(vtkLacunaDepthMapShader* self)
@@ -217,6 +282,10 @@ public:
       .Add("CapBoundary", self->CapBoundary)
       .Get();
   }
+
+private:
+  lacuna::VolumeCaster ShadowVolume;
+  std::unique_ptr<lacuna::CutRegion> ShadowCutAway;
 };
 
 vtkStandardNewMacro(vtkLacunaDepthMapShader);

@@ -50,19 +50,41 @@ struct Rows
   }
 };
 
-/// Copies the tuples at ids of every array of from to to.
+/// The tuples of an array at ids.
+vtkSmartPointer<vtkAbstractArray> Carry(vtkAbstractArray* array, vtkIdList* ids)
+{
+  auto carried = vtkSmartPointer<vtkAbstractArray>::Take(array->NewInstance());
+  carried->SetName(array->GetName());
+  carried->SetNumberOfComponents(array->GetNumberOfComponents());
+  lacuna::Arrays::SetNumberOfTuples(carried, ids->GetNumberOfIds());
+  array->GetTuples(ids, carried);
+  return carried;
+}
+
 void CarryArrays(vtkPointData* from, vtkIdList* ids, vtkPointData* to)
 {
   for (int i = 0; i < from->GetNumberOfArrays(); ++i)
   {
-    vtkAbstractArray* array = from->GetAbstractArray(i);
-    const auto carried = vtkSmartPointer<vtkAbstractArray>::Take(array->NewInstance());
-    carried->SetName(array->GetName());
-    carried->SetNumberOfComponents(array->GetNumberOfComponents());
-    lacuna::Arrays::SetNumberOfTuples(carried, ids->GetNumberOfIds());
-    array->GetTuples(ids, carried);
-    to->AddArray(carried);
+    to->AddArray(Carry(from->GetAbstractArray(i), ids));
   }
+}
+
+/// The numbers in the whole map of pixels, which are numbered in a part of it.
+vtkSmartPointer<vtkIdTypeArray> NumberPixels(
+  const std::vector<long long>& pixels, const int extent[6], const int whole[6])
+{
+  auto numbers = vtkSmartPointer<vtkIdTypeArray>::New();
+  numbers->SetName(lacuna::DepthMap::PixelIdName);
+  lacuna::Arrays::SetNumberOfTuples(numbers, static_cast<vtkIdType>(pixels.size()));
+  const std::int64_t columns = std::int64_t(extent[1]) - extent[0] + 1;
+  const std::int64_t wholeColumns = std::int64_t(whole[1]) - whole[0] + 1;
+  for (std::size_t i = 0; i < pixels.size(); ++i)
+  {
+    const std::int64_t column = pixels[i] % columns + extent[0] - whole[0];
+    const std::int64_t row = pixels[i] / columns + extent[2] - whole[2];
+    numbers->SetValue(static_cast<vtkIdType>(i), column + row * wholeColumns);
+  }
+  return numbers;
 }
 
 /// Degrees between the map's normals and those that the depths give by the nine cases.
@@ -132,7 +154,6 @@ void vtkLacunaDepthMapSurface::Make(
   int whole[6];
   std::copy_n(input->GetExtent(), 6, whole);
   ports.GetInputInformation()->Get(SDDP::WHOLE_EXTENT(), whole);
-  const int* extent = input->GetExtent();
   const Rows rows(whole, ports.GetOutputInformation());
   if (rows.First == rows.Last && whole[2] != whole[3])
   {
@@ -170,31 +191,16 @@ void vtkLacunaDepthMapSurface::Make(
 
   vtkNew<vtkIdList> ids;
   ids->SetNumberOfIds(numberOfPoints);
-  vtkNew<vtkIdTypeArray> pixelIds;
-  pixelIds->SetName(lacuna::DepthMap::PixelIdName);
-  lacuna::Arrays::SetNumberOfTuples(pixelIds, numberOfPoints);
-  const std::int64_t columns = std::int64_t(extent[1]) - extent[0] + 1;
-  const std::int64_t wholeColumns = std::int64_t(whole[1]) - whole[0] + 1;
-  for (vtkIdType i = 0; i < numberOfPoints; ++i)
-  {
-    const std::int64_t column = pixels[i] % columns + extent[0] - whole[0];
-    const std::int64_t row = pixels[i] / columns + extent[2] - whole[2];
-    ids->SetId(i, pixels[i]);
-    pixelIds->SetValue(i, column + row * wholeColumns);
-  }
+  std::copy(pixels.begin(), pixels.end(), ids->GetPointer(0));
   vtkPointData* pointData = output->GetPointData();
   CarryArrays(input->GetPointData(), ids, pointData);
-  pointData->SetPedigreeIds(pixelIds);
+  pointData->SetPedigreeIds(NumberPixels(pixels, input->GetExtent(), whole));
   const std::string normals = lacuna::DepthMap::GetNormalsName(this->DepthArray);
   if (this->ComputeNormalDifference)
   {
     const auto difference =
       DifferenceOfNormals(input, normals, depths.GetGrid(), limits, execution);
-    vtkNew<vtkFloatArray> carried;
-    carried->SetName(difference->GetName());
-    lacuna::Arrays::SetNumberOfTuples(carried, numberOfPoints);
-    difference->GetTuples(ids, carried);
-    pointData->AddArray(carried);
+    pointData->AddArray(Carry(difference, ids));
   }
   pointData->SetActiveScalars(pointData->HasArray(lacuna::DepthMap::ColorName)
       ? lacuna::DepthMap::ColorName

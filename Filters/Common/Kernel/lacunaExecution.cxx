@@ -38,6 +38,110 @@ std::chrono::microseconds GetReportInterval()
   }();
   return interval;
 }
+
+// A loop that several threads work on while the calling thread reports.
+class Loop
+{
+public:
+  // callerWorks: the thread that makes this works on it too, and reports between its ranges.
+  Loop(Execution& execution, std::int64_t count, std::int64_t grain, const Execution::Body& body,
+    bool callerWorks)
+    : Owner(execution)
+    , Count(count)
+    , Grain(grain)
+    , Body(body)
+    , CallerWorks(callerWorks)
+    , Next(Clock::now() + this->Interval)
+  {
+  }
+
+  // Back ends hand out ranges as they like and let no exception through: divide and guard here.
+  void Work(std::int64_t begin, std::int64_t end)
+  {
+    for (std::int64_t b = begin; b < end && !this->Stop; b += this->Grain)
+    {
+      const std::int64_t e = std::min(end, b + this->Grain);
+      try
+      {
+        this->Body(b, e);
+        if (this->CallerWorks && std::this_thread::get_id() == this->Caller &&
+          Clock::now() >= this->Next)
+        {
+          this->Report();
+          this->Next = Clock::now() + this->Interval;
+        }
+      }
+      catch (...)
+      {
+        const std::lock_guard<std::mutex> lock(this->ErrorMutex);
+        if (!this->Error)
+        {
+          this->Error = std::current_exception();
+        }
+        this->Stop = true;
+      }
+      this->Done += e - b;
+    }
+  }
+
+  // Reports until the others are done.
+  void Watch(std::future<void> others)
+  {
+    bool aborted = false;
+    while (others.wait_for(this->Interval) != std::future_status::ready)
+    {
+      if (aborted)
+      {
+        continue;
+      }
+      try
+      {
+        this->Report();
+      }
+      catch (const Aborted&)
+      {
+        this->Stop = true;
+        aborted = true;
+      }
+    }
+    others.get();
+    if (aborted && !this->Error)
+    {
+      throw Aborted();
+    }
+  }
+
+  // Throws what a range threw, or reports that all is done.
+  void Finish()
+  {
+    if (this->Error)
+    {
+      std::rethrow_exception(this->Error);
+    }
+    this->Owner.Report(1);
+  }
+
+private:
+  using Clock = std::chrono::steady_clock;
+
+  void Report()
+  {
+    this->Owner.Report(static_cast<double>(this->Done) / static_cast<double>(this->Count));
+  }
+
+  Execution& Owner;
+  const std::int64_t Count;
+  const std::int64_t Grain;
+  const Execution::Body& Body;
+  const bool CallerWorks;
+  const std::thread::id Caller = std::this_thread::get_id();
+  const std::chrono::microseconds Interval = GetReportInterval();
+  Clock::time_point Next; // of the calling thread
+  std::atomic<std::int64_t> Done{ 0 };
+  std::atomic<bool> Stop{ false };
+  std::exception_ptr Error;
+  std::mutex ErrorMutex;
+};
 }
 
 Aborted::Aborted()
@@ -86,88 +190,26 @@ void Execution::For(std::int64_t count, std::int64_t grain, const Body& body)
   {
     return;
   }
-  grain = std::max<std::int64_t>(1, grain);
-  std::atomic<std::int64_t> done(0);
-  std::atomic<bool> stop(false);
-  std::exception_ptr error;
-  std::mutex errorMutex;
-  using Clock = std::chrono::steady_clock;
-  const std::thread::id caller = std::this_thread::get_id();
-  const std::chrono::microseconds interval = GetReportInterval();
-  const bool alone = interval == std::chrono::microseconds::zero();
+  const std::int64_t least = std::max<std::int64_t>(1, grain);
+  const bool alone = GetReportInterval() == std::chrono::microseconds::zero();
   const bool works = alone || this->LaunchWorks();
-  Clock::time_point next = Clock::now() + interval; // of the calling thread
-  const auto report = [&] { this->Report(static_cast<double>(done) / static_cast<double>(count)); };
-  // Back ends hand out ranges as they like and let no exception through: divide and guard here.
-  const Body guarded = [&](std::int64_t begin, std::int64_t end)
-  {
-    for (std::int64_t b = begin; b < end && !stop; b += grain)
-    {
-      const std::int64_t e = std::min(end, b + grain);
-      try
-      {
-        body(b, e);
-        if (works && std::this_thread::get_id() == caller && Clock::now() >= next)
-        {
-          report();
-          next = Clock::now() + interval;
-        }
-      }
-      catch (...)
-      {
-        const std::lock_guard<std::mutex> lock(errorMutex);
-        if (!error)
-        {
-          error = std::current_exception();
-        }
-        stop = true;
-      }
-      done += e - b;
-    }
-  };
-
+  Loop loop(*this, count, least, body, works);
+  const Body work = [&](std::int64_t begin, std::int64_t end) { loop.Work(begin, end); };
   if (alone)
   {
-    guarded(0, count);
+    loop.Work(0, count);
   }
   else if (works)
   {
-    this->Launch(count, grain, guarded);
+    this->Launch(count, least, work);
   }
   else
   {
     // Only the calling thread may report: so the loop is launched from another one, and this one
     // watches it.
-    std::future<void> loop =
-      std::async(std::launch::async, [&] { this->Launch(count, grain, guarded); });
-    bool aborted = false;
-    while (loop.wait_for(interval) != std::future_status::ready)
-    {
-      if (aborted)
-      {
-        continue;
-      }
-      try
-      {
-        report();
-      }
-      catch (const Aborted&)
-      {
-        stop = true;
-        aborted = true;
-      }
-    }
-    loop.get();
-    if (aborted && !error)
-    {
-      throw Aborted();
-    }
+    loop.Watch(std::async(std::launch::async, [&] { this->Launch(count, least, work); }));
   }
-  if (error)
-  {
-    std::rethrow_exception(error);
-  }
-  this->Report(1);
+  loop.Finish();
 }
 
 ThreadExecution::ThreadExecution(int threads, std::function<bool(double)> progress)

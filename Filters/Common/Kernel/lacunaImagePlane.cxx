@@ -63,10 +63,8 @@ void Place(
     first = span.First;
   }
 }
-}
 
-ImagePlane MakeImagePlane(
-  const std::vector<Vec3>& points, double finestSpacing, const ViewSettings& view)
+void CheckView(const ViewSettings& view)
 {
   if (!HasDirection(view.Direction))
   {
@@ -100,7 +98,13 @@ ImagePlane MakeImagePlane(
             << " pixels is not possible: give positive numbers, or 0 to fit the data";
     throw std::invalid_argument(message.str());
   }
+}
+}
 
+ImagePlane MakeImagePlane(
+  const std::vector<Vec3>& points, double finestSpacing, const ViewSettings& view)
+{
+  CheckView(view);
   ImagePlane plane;
   plane.View = Normalized(view.Direction);
   const Vec3 up = Normalized(view.Up);

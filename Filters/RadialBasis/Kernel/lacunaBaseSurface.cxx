@@ -141,6 +141,13 @@ Vec2 GetPosition(const MapGrid& grid, std::size_t pixel)
     static_cast<double>(grid.GetRow(pixel)) * grid.Spacing[1] };
 }
 
+bool IsInside(const MapGrid& grid, const std::array<int, 4>& rectangle, std::size_t pixel)
+{
+  const auto i = static_cast<int>(pixel % static_cast<std::size_t>(grid.Width));
+  const auto j = static_cast<int>(pixel / static_cast<std::size_t>(grid.Width));
+  return i >= rectangle[0] && i <= rectangle[1] && j >= rectangle[2] && j <= rectangle[3];
+}
+
 double SteepSlope()
 {
   constexpr double Pi = 3.14159265358979323846;
@@ -349,19 +356,13 @@ void BaseSurface::Complete(Execution& execution, const MapMask& carried,
     return; // there is no prior
   }
   this->WarnOfGaps(warnings);
-  const auto width = static_cast<std::size_t>(this->Grid.Width);
-  const auto isInside = [&](std::size_t pixel)
-  {
-    const auto i = static_cast<int>(pixel % width);
-    const auto j = static_cast<int>(pixel / width);
-    return i >= rectangle[0] && i <= rectangle[1] && j >= rectangle[2] && j <= rectangle[3];
-  };
   MapMask known(this->Sound.size(), 0);
   MapMask gaps(this->Sound.size(), 0);
   for (std::size_t pixel = 0; pixel < known.size(); ++pixel)
   {
-    known[pixel] = isInside(pixel) && this->Sound[pixel];
-    gaps[pixel] = isInside(pixel) && !this->Sound[pixel];
+    const bool isInside = IsInside(this->Grid, rectangle, pixel);
+    known[pixel] = isInside && this->Sound[pixel];
+    gaps[pixel] = isInside && !this->Sound[pixel];
   }
   this->IsSmooth = options.Smoothing > 0 || options.CutoffWavelength > 0;
   const bool hasGaps = std::find(gaps.begin(), gaps.end(), 1) != gaps.end();
@@ -372,7 +373,37 @@ void BaseSurface::Complete(Execution& execution, const MapMask& carried,
     return;
   }
 
-  // Height and inclination of the bone above the prior, with which the bone goes on for it.
+  const std::vector<double> depth = this->CarryOn(carried);
+  MapMask nodes(known.size(), 0);
+  for (std::size_t pixel = 0; pixel < carried.size(); ++pixel)
+  {
+    // a smooth fit must not see the eye socket that the prior may be beside them
+    nodes[pixel] =
+      (known[pixel] && (!this->IsSmooth || this->Map.Defect[pixel] || carried[pixel])) ||
+      (carried[pixel] && !this->Sound[pixel]);
+  }
+  MapMask taken(nodes.size(), 0);
+  for (const std::size_t pixel : ThinNodes(this->Grid, nodes, options.NodeSpacing))
+  {
+    taken[pixel] = 1;
+  }
+  if (!this->IsSmooth && hasGaps) // the bridge begins where the prior ends
+  {
+    constexpr double Seam = 2.5; // pixels
+    const double reach = Seam * std::max(this->Grid.Spacing[0], this->Grid.Spacing[1]);
+    const MapMask seam = SelectWithin(execution, this->Grid, gaps, reach, known);
+    std::transform(taken.begin(), taken.end(), seam.begin(), taken.begin(),
+      [](unsigned char a, unsigned char b) { return a | b; });
+  }
+  const double area = static_cast<double>(std::count(nodes.begin(), nodes.end(), 1)) *
+    this->Grid.Spacing[0] * this->Grid.Spacing[1];
+  this->MakeFit(execution, taken, depth, area, options);
+  this->TakeFit(execution, rectangle);
+}
+
+//------------------------------------------------------------------------------
+std::vector<double> BaseSurface::CarryOn(const MapMask& carried) const
+{
   const auto forEach = [&](const auto& body)
   {
     for (std::size_t pixel = 0; pixel < carried.size(); ++pixel)
@@ -386,45 +417,32 @@ void BaseSurface::Complete(Execution& execution, const MapMask& carried,
   };
   const std::array<double, 3> above = FitDepthPlane(forEach).Coefficients;
   std::vector<double> depth = this->OnMap;
-  MapMask nodes(known.size(), 0);
   for (std::size_t pixel = 0; pixel < carried.size(); ++pixel)
   {
-    // a smooth fit must not see the eye socket that the prior may be beside them
-    nodes[pixel] = known[pixel] && (!this->IsSmooth || this->Map.Defect[pixel] || carried[pixel]);
     if (carried[pixel] && !this->Sound[pixel])
     {
       const Vec2 p = GetPosition(this->Grid, pixel);
       depth[pixel] = this->Map.Depth[pixel] - (above[0] + above[1] * p[0] + above[2] * p[1]);
-      nodes[pixel] = 1;
     }
   }
-  const std::vector<std::size_t> thin = ThinNodes(this->Grid, nodes, options.NodeSpacing);
-  MapMask taken(nodes.size(), 0);
-  for (const std::size_t pixel : thin)
-  {
-    taken[pixel] = 1;
-  }
-  if (!this->IsSmooth && hasGaps) // the bridge begins where the prior ends
-  {
-    constexpr double Seam = 2.5; // pixels
-    const double reach = Seam * std::max(this->Grid.Spacing[0], this->Grid.Spacing[1]);
-    const MapMask seam = SelectWithin(execution, this->Grid, gaps, reach, known);
-    std::transform(taken.begin(), taken.end(), seam.begin(), taken.begin(),
-      [](unsigned char a, unsigned char b) { return a | b; });
-  }
+  return depth;
+}
+
+//------------------------------------------------------------------------------
+void BaseSurface::MakeFit(Execution& execution, const MapMask& nodes,
+  const std::vector<double>& depth, double area, const HoleFillOptions& options)
+{
   std::vector<std::array<double, 2>> places;
   std::vector<double> values;
-  for (std::size_t pixel = 0; pixel < taken.size(); ++pixel)
+  for (std::size_t pixel = 0; pixel < nodes.size(); ++pixel)
   {
-    if (taken[pixel])
+    if (nodes[pixel])
     {
       const Vec2 p = GetPosition(this->Grid, pixel);
       places.push_back({ p[0], p[1] });
       values.push_back(depth[pixel]);
     }
   }
-  const double area = static_cast<double>(std::count(nodes.begin(), nodes.end(), 1)) *
-    this->Grid.Spacing[0] * this->Grid.Spacing[1];
   RadialBasisOptions fit =
     GetFitOptions(options, area / std::max(1.0, static_cast<double>(places.size())), false);
   fit.Kernel = this->IsSmooth ? options.Kernel : RadialKernel::ThinPlate;
@@ -432,18 +450,23 @@ void BaseSurface::Complete(Execution& execution, const MapMask& carried,
   fit.Smoothing *= this->IsSmooth ? std::pow(0.5, GetRadialPower(fit.Kernel) + 2) : 1;
   this->Fit = std::make_unique<RadialBasis<2>>(execution, places, values, fit);
   this->Accuracy = options.Accuracy;
+}
 
+//------------------------------------------------------------------------------
+void BaseSurface::TakeFit(Execution& execution, const std::array<int, 4>& rectangle)
+{
   std::vector<std::size_t> pixels;
   std::vector<std::array<double, 2>> points;
   for (std::size_t pixel = 0; pixel < this->OnMap.size(); ++pixel)
   {
-    if (isInside(pixel) && (this->IsSmooth || !this->Sound[pixel]))
+    if (IsInside(this->Grid, rectangle, pixel) && (this->IsSmooth || !this->Sound[pixel]))
     {
       const Vec2 p = GetPosition(this->Grid, pixel);
       pixels.push_back(pixel);
       points.push_back({ p[0], p[1] });
     }
   }
+  std::vector<double> values;
   this->EvaluateFit(execution, points, values);
   for (std::size_t k = 0; k < pixels.size(); ++k)
   {
@@ -492,10 +515,8 @@ std::vector<double> BaseSurface::Evaluate(Execution& execution, const MapGrid& g
   std::vector<std::array<double, 2>> points;
   for (std::size_t pixel = 0; pixel < depth.size(); ++pixel)
   {
-    const auto i = static_cast<int>(pixel % static_cast<std::size_t>(grid.Width));
-    const auto j = static_cast<int>(pixel / static_cast<std::size_t>(grid.Width));
     const Vec2 p = GetPosition(grid, pixel);
-    if (i < rectangle[0] || i > rectangle[1] || j < rectangle[2] || j > rectangle[3])
+    if (!IsInside(grid, rectangle, pixel))
     {
       depth[pixel] = NotANumber;
     }

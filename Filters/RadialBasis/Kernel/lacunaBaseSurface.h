@@ -80,6 +80,12 @@ private:
   void WarnOfGaps(std::vector<std::string>& warnings) const;
   // Whether the prior's depth at p is that of the surface which the map's nearest pixel shows.
   bool IsSoundAt(const Vec2& p, double depth, std::int64_t nearest) const;
+  // Depths of the prior, and of the bone where it goes on for it: by their distance and angle elsewhere.
+  std::vector<double> CarryOn(const MapMask& carried) const;
+  // area: of all pixels that nodes stand for, mm^2
+  void MakeFit(Execution& execution, const MapMask& nodes, const std::vector<double>& depth,
+    double area, const HoleFillOptions& options);
+  void TakeFit(Execution& execution, const std::array<int, 4>& rectangle);
   void EvaluateFit(Execution& execution, const std::vector<std::array<double, 2>>& points,
     std::vector<double>& values) const;
 

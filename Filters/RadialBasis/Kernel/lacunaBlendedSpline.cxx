@@ -36,6 +36,31 @@ double GetWeight(double r, double& slope)
   slope = -20 * rest * rest * rest;
   return rest * rest * rest * rest * (4 * r + 1);
 }
+
+// A local spline.
+struct Ball
+{
+  Vec3 Center;
+  double Radius;
+  std::unique_ptr<SurfaceSpline> Spline;
+};
+
+// What the splines so far leave of the points' values and normals, and where more may be of use.
+struct Rest
+{
+  explicit Rest(std::size_t points)
+    : Values(points)
+    , Gradients(points)
+    , Open(points, 1)
+    , Squares(points, -1)
+  {
+  }
+
+  std::vector<double> Values;
+  std::vector<Vec3> Gradients; // to be the normals
+  std::vector<char> Open;      // 1 in the balls of the last level
+  std::vector<double> Squares; // of the expected errors; below 0: in no ball
+};
 }
 
 //------------------------------------------------------------------------------
@@ -43,13 +68,6 @@ double GetWeight(double r, double& slope)
 class BlendedSpline::Level
 {
 public:
-  struct Ball
-  {
-    Vec3 Center;
-    double Radius;
-    std::unique_ptr<SurfaceSpline> Spline;
-  };
-
   explicit Level(std::vector<Ball> balls)
     : Balls(std::move(balls))
   {
@@ -73,9 +91,6 @@ public:
       }
     }
   }
-
-  std::size_t GetSize() const { return this->Balls.size(); }
-  const Ball& Get(std::size_t ball) const { return this->Balls[ball]; }
 
   // Balls with a point inside, always in the same order.
   void Find(const Vec3& x, std::vector<std::uint32_t>& balls) const
@@ -108,8 +123,47 @@ public:
     }
   }
 
+  // Finds the points in balls, and their expected errors.
+  void Mark(Execution& execution, const std::vector<Vec3>& points, Rest& rest) const
+  {
+    execution.For(static_cast<std::int64_t>(points.size()), 1024,
+      [&](std::int64_t begin, std::int64_t end)
+      {
+        std::vector<std::uint32_t> near;
+        for (std::int64_t i = begin; i < end; ++i)
+        {
+          this->Find(points[i], near);
+          rest.Open[i] = !near.empty();
+          double square = 0;
+          for (const std::uint32_t b : near)
+          {
+            const double e = this->Balls[b].Spline->GetReport().PointError;
+            square += e * e / static_cast<double>(near.size());
+          }
+          rest.Squares[i] = rest.Open[i] ? square : rest.Squares[i];
+        }
+      });
+  }
+
 private:
   using Cell = std::array<std::int64_t, 3>;
+
+  // Pairs of a point and a ball around it, in the order of the balls and in that of the points.
+  struct Pairs
+  {
+    std::vector<std::vector<std::uint32_t>> Near; // balls around each point
+    std::vector<std::size_t> Firsts;              // of each point, in Places
+    std::vector<std::size_t> Places;              // in Members
+    std::vector<std::size_t> Starts;              // of each ball, in Members
+    std::vector<std::uint32_t> Members;           // points
+  };
+
+  // Of the pairs, in the order of Members.
+  struct LocalValues
+  {
+    std::vector<double> Values;
+    std::vector<Vec3> Slopes; // empty: not wanted
+  };
 
   static Cell GetCell(const Vec3& x, int scale)
   {
@@ -138,101 +192,123 @@ private:
   void Add(Execution& execution, const Vec3* points, std::size_t count, double* values,
     Vec3* gradients) const
   {
-    const auto n = static_cast<std::int64_t>(count);
-    std::vector<std::vector<std::uint32_t>> near(count);
-    execution.For(n, 512,
+    const Pairs pairs = this->FindPairs(execution, points, count);
+    const LocalValues local = this->EvaluateBalls(execution, points, pairs, gradients != nullptr);
+    execution.For(static_cast<std::int64_t>(count), 1024,
       [&](std::int64_t begin, std::int64_t end)
       {
         for (std::int64_t i = begin; i < end; ++i)
         {
-          this->Find(points[i], near[i]);
+          this->AddBlend(
+            pairs, local, i, points[i], values[i], gradients ? gradients + i : nullptr);
         }
       });
-    // pairs of a point and a ball, in the order of the balls and in that of the points
-    std::vector<std::size_t> starts(this->Balls.size() + 1, 0);
-    std::vector<std::size_t> firsts(count + 1, 0);
+  }
+
+  Pairs FindPairs(Execution& execution, const Vec3* points, std::size_t count) const
+  {
+    Pairs pairs;
+    pairs.Near.resize(count);
+    execution.For(static_cast<std::int64_t>(count), 512,
+      [&](std::int64_t begin, std::int64_t end)
+      {
+        for (std::int64_t i = begin; i < end; ++i)
+        {
+          this->Find(points[i], pairs.Near[i]);
+        }
+      });
+    pairs.Starts.assign(this->Balls.size() + 1, 0);
+    pairs.Firsts.assign(count + 1, 0);
     for (std::size_t i = 0; i < count; ++i)
     {
-      firsts[i + 1] = firsts[i] + near[i].size();
-      for (const std::uint32_t b : near[i])
+      pairs.Firsts[i + 1] = pairs.Firsts[i] + pairs.Near[i].size();
+      for (const std::uint32_t b : pairs.Near[i])
       {
-        ++starts[b + 1];
+        ++pairs.Starts[b + 1];
       }
     }
-    std::partial_sum(starts.begin(), starts.end(), starts.begin());
-    std::vector<std::size_t> at(starts.begin(), starts.end() - 1);
-    std::vector<std::uint32_t> members(firsts.back());
-    std::vector<std::size_t> places(firsts.back());
+    std::partial_sum(pairs.Starts.begin(), pairs.Starts.end(), pairs.Starts.begin());
+    std::vector<std::size_t> at(pairs.Starts.begin(), pairs.Starts.end() - 1);
+    pairs.Members.resize(pairs.Firsts.back());
+    pairs.Places.resize(pairs.Firsts.back());
     for (std::size_t i = 0; i < count; ++i)
     {
-      for (std::size_t k = 0; k < near[i].size(); ++k)
+      for (std::size_t k = 0; k < pairs.Near[i].size(); ++k)
       {
-        const std::size_t place = at[near[i][k]]++;
-        members[place] = static_cast<std::uint32_t>(i);
-        places[firsts[i] + k] = place;
+        const std::size_t place = at[pairs.Near[i][k]]++;
+        pairs.Members[place] = static_cast<std::uint32_t>(i);
+        pairs.Places[pairs.Firsts[i] + k] = place;
       }
     }
-    std::vector<double> local(members.size());
-    std::vector<Vec3> slopes(gradients ? members.size() : 0);
+    return pairs;
+  }
+
+  LocalValues EvaluateBalls(
+    Execution& execution, const Vec3* points, const Pairs& pairs, bool withSlopes) const
+  {
+    LocalValues local;
+    local.Values.resize(pairs.Members.size());
+    local.Slopes.resize(withSlopes ? pairs.Members.size() : 0);
     execution.For(static_cast<std::int64_t>(this->Balls.size()), 4,
       [&](std::int64_t begin, std::int64_t end)
       {
         Vec3 block[RadialBlock];
         for (std::int64_t b = begin; b < end; ++b)
         {
-          for (std::size_t first = starts[b]; first < starts[b + 1]; first += RadialBlock)
+          const std::size_t last = pairs.Starts[b + 1];
+          for (std::size_t first = pairs.Starts[b]; first < last; first += RadialBlock)
           {
-            const std::size_t size = std::min(RadialBlock, starts[b + 1] - first);
+            const std::size_t size = std::min(RadialBlock, last - first);
             for (std::size_t i = 0; i < size; ++i)
             {
-              block[i] = points[members[first + i]];
+              block[i] = points[pairs.Members[first + i]];
             }
-            this->Balls[b].Spline->EvaluateBlock(
-              block, size, local.data() + first, gradients ? slopes.data() + first : nullptr);
+            this->Balls[b].Spline->EvaluateBlock(block, size, local.Values.data() + first,
+              withSlopes ? local.Slopes.data() + first : nullptr);
           }
         }
       });
-    execution.For(n, 1024,
-      [&](std::int64_t begin, std::int64_t end)
+    return local;
+  }
+
+  // Adds the weighted mean of the balls around point i, which is at x. gradient may be null.
+  void AddBlend(const Pairs& pairs, const LocalValues& local, std::size_t i, const Vec3& x,
+    double& value, Vec3* gradient) const
+  {
+    double weights = 0;
+    double sum = 0;
+    Vec3 weightSlope{};
+    Vec3 sumSlope{};
+    for (std::size_t k = 0; k < pairs.Near[i].size(); ++k)
+    {
+      const Ball& ball = this->Balls[pairs.Near[i][k]];
+      const std::size_t place = pairs.Places[pairs.Firsts[i] + k];
+      const Vec3 away = (1 / ball.Radius) * (x - ball.Center);
+      double slope = 0;
+      const double w = GetWeight(Norm(away), slope);
+      weights += w;
+      sum += w * local.Values[place];
+      if (gradient)
       {
-        for (std::int64_t i = begin; i < end; ++i)
-        {
-          double weights = 0;
-          double sum = 0;
-          Vec3 weightSlope{};
-          Vec3 sumSlope{};
-          for (std::size_t k = 0; k < near[i].size(); ++k)
-          {
-            const Ball& ball = this->Balls[near[i][k]];
-            const std::size_t place = places[firsts[i] + k];
-            const Vec3 away = (1 / ball.Radius) * (points[i] - ball.Center);
-            double slope = 0;
-            const double w = GetWeight(Norm(away), slope);
-            weights += w;
-            sum += w * local[place];
-            if (gradients)
-            {
-              const Vec3 g = (slope / ball.Radius) * away;
-              weightSlope = weightSlope + g;
-              sumSlope = sumSlope + w * slopes[place] + local[place] * g;
-            }
-          }
-          if (!(weights > 0))
-          {
-            continue;
-          }
-          // 1 / weights, and where these are small what it joins to in C2
-          const double u = std::min(1.0, weights / LeastWeight);
-          const double factor = u < 1 ? (3 - 3 * u + u * u) / LeastWeight : 1 / weights;
-          values[i] += factor * sum;
-          if (gradients)
-          {
-            const double change =
-              u < 1 ? (2 * u - 3) / (LeastWeight * LeastWeight) : -1 / (weights * weights);
-            gradients[i] = gradients[i] + factor * sumSlope + (change * sum) * weightSlope;
-          }
-        }
-      });
+        const Vec3 g = (slope / ball.Radius) * away;
+        weightSlope = weightSlope + g;
+        sumSlope = sumSlope + w * local.Slopes[place] + local.Values[place] * g;
+      }
+    }
+    if (!(weights > 0))
+    {
+      return;
+    }
+    // 1 / weights, and where these are small what it joins to in C2
+    const double u = std::min(1.0, weights / LeastWeight);
+    const double factor = u < 1 ? (3 - 3 * u + u * u) / LeastWeight : 1 / weights;
+    value += factor * sum;
+    if (gradient)
+    {
+      const double change =
+        u < 1 ? (2 * u - 3) / (LeastWeight * LeastWeight) : -1 / (weights * weights);
+      *gradient = *gradient + factor * sumSlope + (change * sum) * weightSlope;
+    }
   }
 
   std::vector<Ball> Balls;
@@ -290,6 +366,83 @@ std::vector<Members> CoverPoints(const std::vector<Vec3>& all,
     }
   }
   return balls;
+}
+
+// A spline of what is left of some points; null: it is of no use.
+std::unique_ptr<SurfaceSpline> FitRest(const OrientedPoints& data, const Rest& rest,
+  const std::vector<std::size_t>& which, const BlendedSplineOptions& options)
+{
+  OrientedPoints part;
+  part.Points = Pick(data.Points, which);
+  part.Normals = Pick(data.Normals, which);
+  part.Errors = Pick(data.Errors, which);
+  part.Free = Pick(data.Free, which);
+  double square = 0;
+  for (const std::size_t i : which)
+  {
+    part.Values.push_back(-rest.Values[i]);
+    part.Slopes.push_back(data.Normals[i] - rest.Gradients[i]);
+    square += rest.Values[i] * rest.Values[i] / static_cast<double>(which.size());
+  }
+  if (square <= options.Accuracy * options.Accuracy)
+  {
+    return nullptr;
+  }
+  try
+  {
+    ThreadExecution alone(1);
+    auto spline = std::make_unique<SurfaceSpline>(alone, part, options);
+    return spline->GetReport().Gain > LeastGain ? std::move(spline) : nullptr;
+  }
+  catch (const SurfaceSpline::Unsolvable&)
+  {
+    return nullptr; // too few places in this ball: what there is stays
+  }
+}
+
+std::vector<Ball> FitBalls(Execution& execution, const OrientedPoints& data, const Rest& rest,
+  const std::vector<Members>& cover, const BlendedSplineOptions& options)
+{
+  std::vector<Ball> balls(cover.size());
+  execution.For(static_cast<std::int64_t>(cover.size()), 1,
+    [&](std::int64_t begin, std::int64_t end)
+    {
+      for (std::int64_t b = begin; b < end; ++b)
+      {
+        balls[b] = { cover[b].Center, cover[b].Radius,
+          FitRest(data, rest, cover[b].Points, options) };
+      }
+    });
+  balls.erase(
+    std::remove_if(balls.begin(), balls.end(), [](const Ball& ball) { return !ball.Spline; }),
+    balls.end());
+  return balls;
+}
+
+// Numbers up to n so that each beginning is spread evenly.
+std::vector<std::size_t> GetScrambledOrder(std::size_t n)
+{
+  std::vector<std::size_t> order(n);
+  std::iota(order.begin(), order.end(), std::size_t(0));
+  std::sort(order.begin(), order.end(),
+    [](std::size_t a, std::size_t b) { return Scramble(a) < Scramble(b); });
+  return order;
+}
+
+// Root mean square of what is expected in balls, and of what is left elsewhere.
+double GetPointError(Rest& rest)
+{
+  const std::size_t n = rest.Squares.size();
+  for (std::size_t i = 0; i < n; ++i)
+  {
+    if (rest.Squares[i] < 0) // in no ball
+    {
+      const double slope = std::max(0.1, Norm(rest.Gradients[i]));
+      rest.Squares[i] = rest.Values[i] * rest.Values[i] / (slope * slope);
+    }
+  }
+  return std::sqrt(
+    std::accumulate(rest.Squares.begin(), rest.Squares.end(), 0.0) / static_cast<double>(n));
 }
 }
 
@@ -438,17 +591,11 @@ void BlendedSpline::AddLevels(
   Execution& execution, const OrientedPoints& data, const BlendedSplineOptions& options)
 {
   const std::size_t n = data.Points.size();
-  std::vector<double> values(n);
-  std::vector<Vec3> gradients(n);
   const SingleBlasThread single(execution.GetNumberOfThreads());
-  std::vector<std::size_t> order(n);
-  std::iota(order.begin(), order.end(), std::size_t(0));
-  std::sort(order.begin(), order.end(),
-    [](std::size_t a, std::size_t b) { return Scramble(a) < Scramble(b); });
-  this->Evaluate(execution, data.Points, values, &gradients);
-  std::vector<char> open(n, 1);
-  std::vector<double> squares(n, -1); // of the expected errors
-  SurfaceSplineOptions local = options;
+  const std::vector<std::size_t> order = GetScrambledOrder(n);
+  Rest rest(n);
+  this->Evaluate(execution, data.Points, rest.Values, &rest.Gradients);
+  BlendedSplineOptions local = options;
   local.Nodes = BallNodes;
   double stage = 0.3;
   for (std::size_t count = LevelPoints;; count *= 4)
@@ -456,77 +603,21 @@ void BlendedSpline::AddLevels(
     count = std::min(count, n);
     execution.SetStage(stage, count == n ? 1 : stage + 0.3 * (1 - stage));
     stage += 0.3 * (1 - stage);
-    const std::vector<Members> cover = CoverPoints(
-      data.Points, { order.begin(), order.begin() + static_cast<std::ptrdiff_t>(count) }, open);
-    std::vector<Level::Ball> balls(cover.size());
-    execution.For(static_cast<std::int64_t>(cover.size()), 1,
-      [&](std::int64_t begin, std::int64_t end)
-      {
-        for (std::int64_t b = begin; b < end; ++b)
-        {
-          const std::vector<std::size_t>& which = cover[b].Points;
-          OrientedPoints part;
-          part.Points = Pick(data.Points, which);
-          part.Normals = Pick(data.Normals, which);
-          part.Errors = Pick(data.Errors, which);
-          part.Free = Pick(data.Free, which);
-          double square = 0;
-          for (const std::size_t i : which)
-          {
-            part.Values.push_back(-values[i]);
-            part.Slopes.push_back(data.Normals[i] - gradients[i]);
-            square += values[i] * values[i] / static_cast<double>(which.size());
-          }
-          if (square <= options.Accuracy * options.Accuracy)
-          {
-            continue;
-          }
-          try
-          {
-            ThreadExecution alone(1);
-            auto spline = std::make_unique<SurfaceSpline>(alone, part, local);
-            if (spline->GetReport().Gain > LeastGain)
-            {
-              balls[b] = { cover[b].Center, cover[b].Radius, std::move(spline) };
-            }
-          }
-          catch (const SurfaceSpline::Unsolvable&)
-          {
-            // too few places in this ball: what there is stays
-          }
-        }
-      });
-    balls.erase(std::remove_if(
-                  balls.begin(), balls.end(), [](const Level::Ball& ball) { return !ball.Spline; }),
-      balls.end());
+    const std::vector<Members> cover = CoverPoints(data.Points,
+      { order.begin(), order.begin() + static_cast<std::ptrdiff_t>(count) }, rest.Open);
+    std::vector<Ball> balls = FitBalls(execution, data, rest, cover, local);
     if (balls.empty())
     {
       break;
     }
-    for (const Level::Ball& ball : balls)
+    for (const Ball& ball : balls)
     {
       this->Report.Centers += 2 * ball.Spline->GetReport().Nodes;
     }
     this->Report.LocalSplines += balls.size();
     this->Levels.push_back(std::make_unique<Level>(std::move(balls)));
-    this->Levels.back()->Add(execution, data.Points, values, &gradients);
-    execution.For(static_cast<std::int64_t>(n), 1024,
-      [&](std::int64_t begin, std::int64_t end)
-      {
-        std::vector<std::uint32_t> near;
-        for (std::int64_t i = begin; i < end; ++i)
-        {
-          this->Levels.back()->Find(data.Points[i], near);
-          open[i] = !near.empty();
-          double square = 0;
-          for (const std::uint32_t b : near)
-          {
-            const double e = this->Levels.back()->Get(b).Spline->GetReport().PointError;
-            square += e * e / static_cast<double>(near.size());
-          }
-          squares[i] = open[i] ? square : squares[i];
-        }
-      });
+    this->Levels.back()->Add(execution, data.Points, rest.Values, &rest.Gradients);
+    this->Levels.back()->Mark(execution, data.Points, rest);
     if (count == n)
     {
       break;
@@ -534,16 +625,7 @@ void BlendedSpline::AddLevels(
   }
   if (!(options.PointError > 0))
   {
-    for (std::size_t i = 0; i < n; ++i)
-    {
-      if (squares[i] < 0) // in no ball
-      {
-        const double slope = std::max(0.1, Norm(gradients[i]));
-        squares[i] = values[i] * values[i] / (slope * slope);
-      }
-    }
-    this->Report.PointError =
-      std::sqrt(std::accumulate(squares.begin(), squares.end(), 0.0) / static_cast<double>(n));
+    this->Report.PointError = GetPointError(rest);
   }
 }
 

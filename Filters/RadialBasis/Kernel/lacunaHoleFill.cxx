@@ -116,6 +116,31 @@ void EvaluateRectangle(Execution& execution, const RadialBasis<2>& function, Hol
   }
 }
 
+void EvaluateGradients(Execution& execution, const RadialBasis<2>& function, HoleFillResult& result)
+{
+  std::vector<std::array<double, 2>> points;
+  for (const std::size_t pixel : result.Filled)
+  {
+    points.push_back(GetPosition(result.Grid, pixel));
+  }
+  std::vector<double> values;
+  function.Evaluate(execution, points, values, result.Gradients);
+}
+
+std::array<double, 3> FindPlane(const HoleFillInput& input, const MapMask& support,
+  const BaseSurface& base, const RadialBasis<2>& function)
+{
+  MapMask region = input.Defect;
+  std::transform(region.begin(), region.end(), support.begin(), region.begin(),
+    [](unsigned char a, unsigned char b) { return a | b; });
+  std::array<double, 3> plane = base.FitPlane(region);
+  for (std::size_t c = 0; c < 3; ++c)
+  {
+    plane[c] += function.GetPolynomial()[c];
+  }
+  return plane;
+}
+
 // Adds base (empty: none) to the fit, and its differences to the gradients in the defect.
 void AddBase(const std::vector<double>& base, HoleFillResult& result)
 {
@@ -251,6 +276,28 @@ bool HoleFiller::Problem::operator==(const Problem& other) const
 }
 
 //------------------------------------------------------------------------------
+HoleFiller::Problem HoleFiller::MakeProblem(const HoleFillInput& input, const BaseSurface& base,
+  const MapMask& support, const HoleFillOptions& options)
+{
+  Problem problem;
+  for (const std::size_t pixel : ThinNodes(input.Grid, support, options.NodeSpacing))
+  {
+    const double below = base.Exists() ? base.GetOnMap()[pixel] : 0;
+    if (std::isfinite(below)) // a trend may end before the support
+    {
+      problem.Nodes.push_back(GetPosition(input.Grid, pixel));
+      problem.Values.push_back(input.Depth[pixel] - below);
+    }
+  }
+  const auto pixels = static_cast<double>(std::count(support.begin(), support.end(), 1));
+  problem.Options = GetFitOptions(options,
+    pixels * input.Grid.Spacing[0] * input.Grid.Spacing[1] /
+      std::max(1.0, static_cast<double>(problem.Nodes.size())),
+    !input.ControlPoints.empty());
+  return problem;
+}
+
+//------------------------------------------------------------------------------
 void HoleFiller::Fit(Execution& execution, Problem problem, HoleFillResult& result)
 {
   result.Reused = this->Function && this->Last == problem;
@@ -308,24 +355,8 @@ HoleFillResult HoleFiller::Fill(
     FindRectangle(input, selection.Support, options.OutputMargin, input.Grid), options,
     result.Warnings);
 
-  Problem problem;
-  for (const std::size_t pixel : ThinNodes(input.Grid, selection.Support, options.NodeSpacing))
-  {
-    const double below = base.Exists() ? base.GetOnMap()[pixel] : 0;
-    if (std::isfinite(below)) // a trend may end before the support
-    {
-      problem.Nodes.push_back(GetPosition(input.Grid, pixel));
-      problem.Values.push_back(input.Depth[pixel] - below);
-    }
-  }
-  const auto pixels =
-    static_cast<double>(std::count(selection.Support.begin(), selection.Support.end(), 1));
-  problem.Options = GetFitOptions(options,
-    pixels * input.Grid.Spacing[0] * input.Grid.Spacing[1] /
-      std::max(1.0, static_cast<double>(problem.Nodes.size())),
-    !input.ControlPoints.empty());
+  Problem problem = MakeProblem(input, base, selection.Support, options);
   const Control control(input, base, grid);
-
   const auto start = std::chrono::steady_clock::now();
   execution.SetStage(0.2, 0.6);
   this->Fit(execution, std::move(problem), result);
@@ -342,25 +373,11 @@ HoleFillResult HoleFiller::Fill(
   execution.SetStage(0.7, 0.9);
   EvaluateRectangle(execution, *this->Function, result);
   execution.SetStage(0.9, 0.95);
-  std::vector<std::array<double, 2>> points;
-  for (const std::size_t pixel : result.Filled)
-  {
-    points.push_back(GetPosition(grid, pixel));
-  }
-  std::vector<double> values;
-  this->Function->Evaluate(execution, points, values, result.Gradients);
+  EvaluateGradients(execution, *this->Function, result);
   execution.SetStage(0.95, 1);
   AddBase(base.Evaluate(execution, grid, result.Nearest, result.Rectangle), result);
   FinishDepth(execution, input, *this->Function, base.GetOnMap(), result);
-
-  MapMask region = input.Defect;
-  std::transform(region.begin(), region.end(), selection.Support.begin(), region.begin(),
-    [](unsigned char a, unsigned char b) { return a | b; });
-  result.Plane = base.FitPlane(region);
-  for (std::size_t c = 0; c < 3; ++c)
-  {
-    result.Plane[c] += this->Function->GetPolynomial()[c];
-  }
+  result.Plane = FindPlane(input, selection.Support, base, *this->Function);
   if (input.ControlPoints.empty())
   {
     this->Function.reset(); // nothing is dragged

@@ -18,6 +18,7 @@
 
 namespace lacuna
 {
+class BaseSurface;
 class Execution;
 
 /// The map and what else shapes the surface that fills its hole.
@@ -83,6 +84,8 @@ private:
     bool operator==(const Problem& other) const;
   };
 
+  static Problem MakeProblem(const HoleFillInput& input, const BaseSurface& base,
+    const MapMask& support, const HoleFillOptions& options);
   void Fit(Execution& execution, Problem problem, HoleFillResult& result);
 
   Problem Last;

@@ -2,7 +2,6 @@
 #include "lacunaRadialBasis.h"
 
 #include "lacunaExecution.h"
-#include "lacunaRadialSolver.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "lacunaRadialSolver.h"
+#include "lacunaRadialSystem.h"
 
 #include "lacunaExecution.h"
 #include "lacunaFastRadialSum.h"
@@ -59,6 +59,128 @@ double MaximumNorm(const std::vector<double>& values)
   }
   return norm;
 }
+
+// The Krylov space of GMRES: orthonormal directions, and what is left of a residual in terms of them.
+class Directions
+{
+public:
+  enum class Added
+  {
+    Nothing, // it lies in the space already
+    One,
+    Last // and the residual is 0 now
+  };
+
+  explicit Directions(const std::vector<double>& residual)
+    : Left(std::sqrt(Dot(residual, residual)))
+    , Right(1, this->Left)
+    , V(1, residual)
+  {
+    for (double& x : this->V[0])
+    {
+      x /= this->Left;
+    }
+  }
+
+  const std::vector<double>& GetLast() const { return this->V.back(); }
+  double GetLeft() const { return this->Left; } // 2-norm of the residual
+
+  // w: what the equations make of the preconditioned last direction.
+  Added Add(std::vector<double> w)
+  {
+    const std::size_t k = this->Columns.size();
+    std::vector<double> column = this->Orthogonalize(w);
+    const double next = column[k + 1];
+    for (std::size_t j = 0; j < k; ++j)
+    {
+      const std::array<double, 2>& turn = this->Rotations[j];
+      const double upper = turn[0] * column[j] + turn[1] * column[j + 1];
+      column[j + 1] = -turn[1] * column[j] + turn[0] * column[j + 1];
+      column[j] = upper;
+    }
+    const double radius = std::hypot(column[k], column[k + 1]);
+    if (radius == 0)
+    {
+      return Added::Nothing;
+    }
+    this->Rotations.push_back({ column[k] / radius, column[k + 1] / radius });
+    column[k] = radius;
+    this->Columns.push_back(std::move(column));
+    this->Right.push_back(-this->Rotations[k][1] * this->Right[k]);
+    this->Right[k] *= this->Rotations[k][0];
+    this->Left = std::abs(this->Right[k + 1]);
+    if (next == 0)
+    {
+      return Added::Last;
+    }
+    this->V.push_back(std::move(w));
+    for (double& x : this->V.back())
+    {
+      x /= next;
+    }
+    return Added::One;
+  }
+
+  // The residual itself: the last of Right times the last column of the rotations in terms of V.
+  void GetResidual(std::vector<double>& residual) const
+  {
+    const std::size_t k = this->Rotations.size();
+    std::vector<double> factors(k + 1, 0.0);
+    factors[k] = this->Right[k];
+    for (std::size_t j = k; j-- > 0;)
+    {
+      factors[j] = -this->Rotations[j][1] * factors[j + 1];
+      factors[j + 1] *= this->Rotations[j][0];
+    }
+    std::fill(residual.begin(), residual.end(), 0.0);
+    for (std::size_t j = 0; j <= k; ++j)
+    {
+      AddMultiple(residual, factors[j], this->V[j]);
+    }
+  }
+
+  // Of the preconditioned directions, so that the residual becomes least.
+  std::vector<double> GetFactors() const
+  {
+    std::vector<double> y(this->Columns.size());
+    for (std::size_t k = this->Columns.size(); k-- > 0;)
+    {
+      y[k] = this->Right[k];
+      for (std::size_t j = k + 1; j < this->Columns.size(); ++j)
+      {
+        y[k] -= this->Columns[j][k] * y[j];
+      }
+      y[k] /= this->Columns[k][k];
+    }
+    return y;
+  }
+
+private:
+  // Takes the directions out of w, twice. Their parts in it, then the length of what is left.
+  std::vector<double> Orthogonalize(std::vector<double>& w) const
+  {
+    const std::size_t k = this->V.size() - 1;
+    std::vector<double> column(k + 2, 0.0);
+    for (int pass = 0; pass < 2; ++pass)
+    {
+      for (std::size_t j = 0; j <= k; ++j)
+      {
+        const double part = Dot(w, this->V[j]);
+        column[j] += part;
+        AddMultiple(w, -part, this->V[j]);
+      }
+    }
+    column[k + 1] = std::sqrt(Dot(w, w));
+    return column;
+  }
+
+  double Left;
+  std::vector<double> Right;
+  std::vector<std::vector<double>> V;
+  // The upper triangle that Givens rotations leave of the Hessenberg matrix
+  std::vector<std::vector<double>> Columns;
+  std::vector<std::array<double, 2>> Rotations;
+};
 
 template <int Dimension>
 class IterativeEquations : public RadialEquations<Dimension>
@@ -139,81 +261,29 @@ private:
   // One run of flexible GMRES on residual, which becomes what it thinks is left.
   void Cycle(std::vector<double>& residual, std::vector<double>& weights)
   {
-    const std::size_t n = residual.size();
-    const double length = std::sqrt(Dot(residual, residual));
     const double start = MaximumNorm(residual);
-    std::vector<std::vector<double>> v(1, residual);
+    Directions tried(residual);
     std::vector<std::vector<double>> z;
-    for (double& x : v[0])
-    {
-      x /= length;
-    }
-    // The upper triangle that Givens rotations leave of the Hessenberg matrix
-    std::vector<std::vector<double>> columns;
-    std::vector<std::array<double, 2>> rotations;
-    std::vector<double> right(1, length);
-    double left = length;
     for (int k = 0; k < MaximumDirections; ++k)
     {
-      z.push_back(this->Preconditioner->Apply(*this->Run, v[k]));
-      std::vector<double> w(n);
-      this->Sum.ApplyUpTo(
-        ProductOrder, *this->Run, z[k], ProductAccuracy * this->Tolerance / left, w.data());
+      z.push_back(this->Preconditioner->Apply(*this->Run, tried.GetLast()));
+      std::vector<double> w(residual.size());
+      this->Sum.ApplyUpTo(ProductOrder, *this->Run, z[k],
+        ProductAccuracy * this->Tolerance / tried.GetLeft(), w.data());
       this->AddDiagonal(z[k], w);
       this->Projection.Remove(w);
-      std::vector<double> column(k + 2, 0.0);
-      for (int pass = 0; pass < 2; ++pass)
-      {
-        for (int j = 0; j <= k; ++j)
-        {
-          const double part = Dot(w, v[j]);
-          column[j] += part;
-          AddMultiple(w, -part, v[j]);
-        }
-      }
-      column[k + 1] = std::sqrt(Dot(w, w));
-      const double next = column[k + 1];
-      for (int j = 0; j < k; ++j)
-      {
-        const double upper = rotations[j][0] * column[j] + rotations[j][1] * column[j + 1];
-        column[j + 1] = -rotations[j][1] * column[j] + rotations[j][0] * column[j + 1];
-        column[j] = upper;
-      }
-      const double radius = std::hypot(column[k], column[k + 1]);
-      if (radius == 0)
+      const Directions::Added added = tried.Add(std::move(w));
+      if (added == Directions::Added::Nothing)
       {
         z.pop_back();
         break;
       }
-      rotations.push_back({ column[k] / radius, column[k + 1] / radius });
-      column[k] = radius;
-      columns.push_back(column);
-      right.push_back(-rotations[k][1] * right[k]);
-      right[k] *= rotations[k][0];
-      left = std::abs(right[k + 1]);
       ++this->Iterations;
-      if (next == 0)
+      if (added == Directions::Added::Last)
       {
         break;
       }
-      v.push_back(std::move(w));
-      for (double& x : v.back())
-      {
-        x /= next;
-      }
-      // The residual itself: right[k + 1] times the last column of the rotations in terms of v
-      std::vector<double> factors(k + 2, 0.0);
-      factors[k + 1] = right[k + 1];
-      for (int j = k; j >= 0; --j)
-      {
-        factors[j] = -rotations[j][1] * factors[j + 1];
-        factors[j + 1] *= rotations[j][0];
-      }
-      std::fill(residual.begin(), residual.end(), 0.0);
-      for (int j = 0; j <= k + 1; ++j)
-      {
-        AddMultiple(residual, factors[j], v[j]);
-      }
+      tried.GetResidual(residual);
       const double norm = MaximumNorm(residual);
       this->ReportProgress(norm / start, start);
       if (norm <= std::max(0.6 * this->Tolerance, CycleReduction * start))
@@ -221,16 +291,7 @@ private:
         break;
       }
     }
-    std::vector<double> y(columns.size());
-    for (std::size_t k = columns.size(); k-- > 0;)
-    {
-      y[k] = right[k];
-      for (std::size_t j = k + 1; j < columns.size(); ++j)
-      {
-        y[k] -= columns[j][k] * y[j];
-      }
-      y[k] /= columns[k][k];
-    }
+    const std::vector<double> y = tried.GetFactors();
     for (std::size_t k = 0; k < y.size(); ++k)
     {
       AddMultiple(weights, y[k], z[k]);

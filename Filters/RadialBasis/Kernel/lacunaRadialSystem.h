@@ -96,5 +96,12 @@ public:
 template <int Dimension>
 std::unique_ptr<RadialEquations<Dimension>> PrepareDirectly(
   Execution& execution, const RadialSystem<Dimension>& system, std::uint64_t maximumBytes);
+
+/// By flexible GMRES on the complement of the polynomials with fast sums and a
+/// SchwarzPreconditioner, in O(n) memory. The residual of a solution is computed anew, from sums whose
+/// error bound is a tenth of the tolerance and counted in.
+template <int Dimension>
+std::unique_ptr<RadialEquations<Dimension>> PrepareIteratively(
+  Execution& execution, const RadialSystem<Dimension>& system);
 }
 #endif

@@ -6,6 +6,7 @@
 #include "lacunaSingleBlasThread.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <utility>
@@ -50,6 +51,174 @@ double Dot(const std::vector<double>& a, const std::vector<double>& b)
 double GetRootMeanSquare(const std::vector<double>& a)
 {
   return std::sqrt(Dot(a, a) / static_cast<double>(a.size()));
+}
+
+template <class T>
+std::vector<T> Pick(const std::vector<T>& all, const std::vector<std::uint32_t>& which)
+{
+  std::vector<T> picked;
+  picked.reserve(which.size());
+  for (const std::uint32_t i : which)
+  {
+    picked.push_back(all[i]);
+  }
+  return picked;
+}
+
+// The equations of some nodes in a frame of their own, so that their extent does not count.
+template <int Dimension>
+struct LocalSystem : RadialSystem<Dimension>
+{
+  using Point = std::array<double, Dimension>;
+
+  LocalSystem(
+    const RadialSystem<Dimension>& whole, std::vector<Point> nodes, std::vector<double> diagonal)
+  {
+    this->Kernel = whole.Kernel;
+    this->Polynomial = whole.Polynomial;
+    this->Nodes = std::move(nodes);
+    this->Diagonal = std::move(diagonal);
+    Point low = this->Nodes[0];
+    Point high = low;
+    for (const Point& x : this->Nodes)
+    {
+      for (int c = 0; c < Dimension; ++c)
+      {
+        low[c] = std::min(low[c], x[c]);
+        high[c] = std::max(high[c], x[c]);
+      }
+    }
+    double extent = 0;
+    for (int c = 0; c < Dimension; ++c)
+    {
+      extent = std::max(extent, high[c] - low[c]);
+    }
+    const bool shaped = IsRadialShaped(this->Kernel);
+    const double unit = shaped ? 1.0 : extent;
+    this->Polynomial.Length = shaped ? extent : 1.0;
+    this->Scale = std::pow(unit, GetRadialPower(this->Kernel));
+    for (std::size_t i = 0; i < this->Nodes.size(); ++i)
+    {
+      this->Diagonal[i] /= this->Scale;
+      for (int c = 0; c < Dimension; ++c)
+      {
+        this->Nodes[i][c] = (this->Nodes[i][c] - low[c]) / unit;
+        this->Axis[c].push_back(this->Nodes[i][c]);
+      }
+    }
+  }
+
+  // P, column after column.
+  std::vector<double> GetMonomials() const
+  {
+    const std::size_t size = this->GetSize();
+    std::vector<double> monomials(size * this->Polynomial.GetCount());
+    double row[RadialPolynomial<Dimension>::MaximumCount];
+    for (std::size_t i = 0; i < size; ++i)
+    {
+      this->Polynomial.Evaluate(this->Nodes[i], row);
+      for (int k = 0; k < this->Polynomial.GetCount(); ++k)
+      {
+        monomials[i + size * k] = row[k];
+      }
+    }
+    return monomials;
+  }
+
+  // A + diagonal.
+  std::vector<double> GetMatrix() const
+  {
+    const std::size_t size = this->GetSize();
+    const RadialLoops<Dimension> loops =
+      GetRadialLoops<Dimension>(this->Kernel, BestInstructionSet());
+    std::vector<double> matrix(size * size);
+    for (std::size_t j = 0; j < size; ++j)
+    {
+      loops.Column(this->GetCoordinates(), size, this->Nodes[j].data(), matrix.data() + size * j);
+      matrix[j + size * j] += this->Diagonal[j];
+    }
+    return matrix;
+  }
+
+  double Scale; // its kernel is that of the whole, divided by this
+};
+
+// Q of the QR decomposition of a matrix.
+class Orthogonal
+{
+public:
+  Orthogonal(std::vector<double> matrix, int rows, int columns)
+    : Rows(rows)
+    , Columns(columns)
+    , Reflectors(std::move(matrix))
+    , Tau(columns)
+    , Work(64 * static_cast<std::size_t>(rows))
+    , WorkLength(static_cast<int>(this->Work.size()))
+  {
+    int info = 0;
+    dgeqrf_(&this->Rows, &this->Columns, this->Reflectors.data(), &this->Rows, this->Tau.data(),
+      this->Work.data(), &this->WorkLength, &info);
+  }
+
+  // Multiplies a square matrix from the left ("L") or right ("R") by Q ("N") or its transpose ("T").
+  void Multiply(const char* side, const char* trans, std::vector<double>& matrix)
+  {
+    int info = 0;
+    dormqr_(side, trans, &this->Rows, &this->Rows, &this->Columns, this->Reflectors.data(),
+      &this->Rows, this->Tau.data(), matrix.data(), &this->Rows, this->Work.data(),
+      &this->WorkLength, &info, 1, 1);
+  }
+
+private:
+  int Rows;
+  int Columns;
+  std::vector<double> Reflectors;
+  std::vector<double> Tau;
+  std::vector<double> Work;
+  int WorkLength;
+};
+
+// The inverse of a symmetric matrix without its first rows and columns, positive definite; these are 0 in
+// it.
+std::vector<double> InvertFrom(int first, const std::vector<double>& matrix, int m)
+{
+  const auto size = static_cast<std::size_t>(m);
+  const int rest = m - first;
+  double trace = 0;
+  for (int i = first; i < m; ++i)
+  {
+    trace += std::abs(matrix[i + size * i]);
+  }
+  std::vector<double> inverse;
+  double shift = 0;
+  int info = 0;
+  do
+  {
+    // Nodes very close together: round-off needs a little smoothing.
+    inverse = matrix;
+    for (int i = first; i < m; ++i)
+    {
+      inverse[i + size * i] += shift;
+    }
+    shift = std::max(10 * shift, 1e-14 * trace / m + 1e-300);
+    dpotrf_("L", &rest, inverse.data() + first * (size + 1), &m, &info, 1);
+  } while (info != 0 && shift < trace);
+  dpotri_("L", &rest, inverse.data() + first * (size + 1), &m, &info, 1);
+  for (std::size_t j = 0; j < size; ++j)
+  {
+    for (std::size_t i = 0; i < size; ++i)
+    {
+      if (static_cast<int>(std::min(i, j)) < first)
+      {
+        inverse[i + size * j] = 0;
+      }
+      else if (i < j)
+      {
+        inverse[i + size * j] = inverse[j + size * i];
+      }
+    }
+  }
+  return inverse;
 }
 }
 
@@ -212,113 +381,24 @@ double SchwarzPreconditioner<Dimension>::EstimateBytes(std::size_t n)
 template <int Dimension>
 void SchwarzPreconditioner<Dimension>::Invert(const Level& level, Domain& domain) const
 {
-  // In the local frame, so that the size of the domain does not count.
-  const auto m = static_cast<int>(domain.Nodes.size());
-  const auto size = static_cast<std::size_t>(m);
-  Point low = level.Nodes[domain.Nodes[0]];
-  Point high = low;
-  for (const std::uint32_t i : domain.Nodes)
-  {
-    for (int c = 0; c < Dimension; ++c)
-    {
-      low[c] = std::min(low[c], level.Nodes[i][c]);
-      high[c] = std::max(high[c], level.Nodes[i][c]);
-    }
-  }
-  double extent = 0;
-  for (int c = 0; c < Dimension; ++c)
-  {
-    extent = std::max(extent, high[c] - low[c]);
-  }
-  const bool shaped = IsRadialShaped(this->System.Kernel);
-  const double unit = shaped ? 1.0 : extent;
-  RadialPolynomial<Dimension> polynomial = this->System.Polynomial;
-  polynomial.Length = shaped ? extent : 1.0;
-
-  RadialSystem<Dimension> local;
-  const int monomials = std::min(polynomial.GetCount(), m);
-  std::vector<double> p(size * polynomial.GetCount());
-  double basis[RadialPolynomial<Dimension>::MaximumCount];
-  for (std::size_t i = 0; i < size; ++i)
-  {
-    Point u = level.Nodes[domain.Nodes[i]];
-    for (int c = 0; c < Dimension; ++c)
-    {
-      u[c] = (u[c] - low[c]) / unit;
-      local.Axis[c].push_back(u[c]);
-    }
-    local.Nodes.push_back(u);
-    polynomial.Evaluate(u, basis);
-    for (int k = 0; k < polynomial.GetCount(); ++k)
-    {
-      p[i + size * k] = basis[k];
-    }
-  }
-  const double scale = std::pow(unit, GetRadialPower(this->System.Kernel));
-  const RadialLoops<Dimension> loops =
-    GetRadialLoops<Dimension>(this->System.Kernel, BestInstructionSet());
-  std::vector<double> kernel(size * size);
-  for (std::size_t j = 0; j < size; ++j)
-  {
-    loops.Column(local.GetCoordinates(), size, local.Nodes[j].data(), kernel.data() + size * j);
-    kernel[j + size * j] += level.Diagonal[domain.Nodes[j]] / scale;
-  }
-
+  const LocalSystem<Dimension> local(
+    this->System, Pick(level.Nodes, domain.Nodes), Pick(level.Diagonal, domain.Nodes));
+  const std::size_t size = local.GetSize();
+  const int monomials = std::min(local.Polynomial.GetCount(), static_cast<int>(size));
+  Orthogonal q(local.GetMonomials(), static_cast<int>(size), monomials);
+  std::vector<double> matrix = local.GetMatrix();
+  q.Multiply("L", "T", matrix);
+  q.Multiply("R", "N", matrix);
   // On the complement of the polynomials, the last columns of Q, the matrix is positive definite.
-  std::vector<double> tau(monomials);
-  std::vector<double> work(64 * size);
-  const int workLength = static_cast<int>(work.size());
-  int info = 0;
-  dgeqrf_(&m, &monomials, p.data(), &m, tau.data(), work.data(), &workLength, &info);
-  const auto turn = [&](const char* side, const char* trans, std::vector<double>& matrix)
-  {
-    dormqr_(side, trans, &m, &m, &monomials, p.data(), &m, tau.data(), matrix.data(), &m,
-      work.data(), &workLength, &info, 1, 1);
-  };
-  turn("L", "T", kernel);
-  turn("R", "N", kernel);
-  const int rest = m - monomials;
-  double trace = 0;
-  for (int i = monomials; i < m; ++i)
-  {
-    trace += std::abs(kernel[i + size * i]);
-  }
-  std::vector<double> inverse;
-  double shift = 0;
-  do
-  {
-    // Nodes very close together: round-off needs a little smoothing.
-    inverse = kernel;
-    for (int i = monomials; i < m; ++i)
-    {
-      inverse[i + size * i] += shift;
-    }
-    shift = std::max(10 * shift, 1e-14 * trace / m + 1e-300);
-    dpotrf_("L", &rest, inverse.data() + monomials * (size + 1), &m, &info, 1);
-  } while (info != 0 && shift < trace);
-  dpotri_("L", &rest, inverse.data() + monomials * (size + 1), &m, &info, 1);
-  for (std::size_t j = 0; j < size; ++j)
-  {
-    for (std::size_t i = 0; i < size; ++i)
-    {
-      if (static_cast<int>(std::min(i, j)) < monomials)
-      {
-        inverse[i + size * j] = 0;
-      }
-      else if (i < j)
-      {
-        inverse[i + size * j] = inverse[j + size * i];
-      }
-    }
-  }
-  turn("L", "N", inverse);
-  turn("R", "T", inverse);
+  std::vector<double> inverse = InvertFrom(monomials, matrix, static_cast<int>(size));
+  q.Multiply("L", "N", inverse);
+  q.Multiply("R", "T", inverse);
   domain.Inverse.resize(size * domain.Own);
   for (std::size_t j = 0; j < domain.Own; ++j)
   {
     for (std::size_t i = 0; i < size; ++i)
     {
-      domain.Inverse[i + size * j] = static_cast<float>(inverse[i + size * j] / scale);
+      domain.Inverse[i + size * j] = static_cast<float>(inverse[i + size * j] / local.Scale);
     }
   }
 }

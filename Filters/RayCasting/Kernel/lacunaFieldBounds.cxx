@@ -132,6 +132,115 @@ struct Reach
   {
   }
 };
+
+template <class T>
+struct Support
+{
+  const T* Voxels;
+  std::array<int, 3> Size;
+  int Before; ///< voxels that count for a cell, below its first one and above it
+  int After;
+  bool Guard; ///< voxels may be not finite
+};
+
+/// Finds the bounds of the fine blocks, layer by layer: first over the slices, then the rows, then
+/// along them.
+template <class T>
+class LayerBuilder
+{
+public:
+  using Level = typename FieldBounds<T>::Level;
+
+  LayerBuilder(const Support<T>& support, Level& level)
+    : Of(support)
+    , To(level)
+    , Width((1 << FineShift) + support.Before + support.After)
+    , Row(support.Size[0])
+    , Low((static_cast<std::size_t>(level.Blocks[0]) << FineShift) + this->Width)
+    , High(this->Low.size())
+    , Lows(Ring * this->Row)
+    , Highs(Ring * this->Row)
+  {
+  }
+
+  void Build(int k)
+  {
+    const Reach rz(k, FineShift, this->Of.Size[2], this->Of.Before, this->Of.After);
+    int folded = 0; // rows before this one
+    for (int j = 0; j < this->To.Blocks[1]; ++j)
+    {
+      const Reach ry(j, FineShift, this->Of.Size[1], this->Of.Before, this->Of.After);
+      for (; folded <= ry.Last; ++folded)
+      {
+        this->FoldSlices(rz, folded);
+      }
+      this->FoldRows(ry);
+      Slide(this->Low, this->Width, [](T a, T b) { return a < b ? a : b; });
+      Slide(this->High, this->Width, [](T a, T b) { return a > b ? a : b; });
+      T* bounds = this->To.Bounds.data() + this->To.IndexOf(0, j, k);
+      for (int i = 0; i < this->To.Blocks[0]; ++i)
+      {
+        bounds[2 * i] = this->Low[i << FineShift];
+        bounds[2 * i + 1] = this->High[i << FineShift];
+      }
+    }
+  }
+
+private:
+  static constexpr int Ring = 8;
+
+  void FoldSlices(const Reach& slices, int y)
+  {
+    const auto columns = static_cast<std::int64_t>(this->Of.Size[0]);
+    const std::int64_t stride = columns * this->Of.Size[1];
+    const T* first = this->Of.Voxels + slices.First * stride + y * columns;
+    const int count = slices.Last - slices.First + 1;
+    T* low = this->Lows.data() + y % Ring * this->Row;
+    T* high = this->Highs.data() + y % Ring * this->Row;
+    std::fill_n(low, this->Row, Highest<T>());
+    std::fill_n(high, this->Row, Lowest<T>());
+    for (int n = 0; n < count; n += 4)
+    {
+      std::array<const T*, 4> rows;
+      for (int m = 0; m < 4; ++m)
+      {
+        rows[m] = first + std::min(n + m, count - 1) * stride;
+      }
+      Accumulate(rows, this->Of.Size[0], this->Of.Guard, low, high);
+    }
+  }
+
+  void FoldRows(const Reach& rows)
+  {
+    std::fill(this->Low.begin(), this->Low.end(), Highest<T>());
+    std::fill(this->High.begin(), this->High.end(), Lowest<T>());
+    T* low = this->Low.data() + this->Of.Before;
+    T* high = this->High.data() + this->Of.Before;
+    const std::size_t n = this->Row;
+    for (int y = rows.First; y <= rows.Last; ++y)
+    {
+      const T* l = this->Lows.data() + y % Ring * n;
+      const T* h = this->Highs.data() + y % Ring * n;
+      for (std::size_t x = 0; x < n; ++x)
+      {
+        low[x] = l[x] < low[x] ? l[x] : low[x];
+        high[x] = h[x] > high[x] ? h[x] : high[x];
+      }
+    }
+  }
+
+  const Support<T>& Of;
+  Level& To;
+  int Width; ///< of the support of a block
+  std::size_t Row;
+  /// Voxel x is element x + Before; those beyond the volume do not count.
+  std::vector<T> Low;
+  std::vector<T> High;
+  /// The bounds of a block's rows of voxels over the slices of its support; row y is number y % Ring, and
+  /// stays for the next block.
+  std::vector<T> Lows;
+  std::vector<T> Highs;
+};
 }
 
 template <class T>
@@ -200,70 +309,14 @@ void FieldBounds<T>::Build(
   this->Coarse.Bounds.resize(this->Coarse.IndexOf(0, 0, this->Coarse.Blocks[2]));
   // Who builds the last layer of blocks in a coarse one builds that too.
   std::vector<std::atomic<int>> built(this->Coarse.Blocks[2]);
-  const bool guard = this->NumberOfNonFinite > 0;
+  const Support<T> support{ voxels, size, before, after, this->NumberOfNonFinite > 0 };
   execution.For(level.Blocks[2], 1,
     [&](std::int64_t begin, std::int64_t end)
     {
-      const int width = (1 << FineShift) + before + after;
-      // voxel x is element x + before; those beyond the volume do not count
-      const std::size_t length = (static_cast<std::size_t>(level.Blocks[0]) << FineShift) + width;
-      std::vector<T> low(length);
-      std::vector<T> high(length);
-      // the bounds of a block's rows of voxels over the slices of its support; row y is number
-      // y % Ring, and stays for the next block
-      constexpr int ring = 8;
-      const std::size_t row = size[0];
-      std::vector<T> lows(ring * row);
-      std::vector<T> highs(ring * row);
-      const auto fold = [&](const T* first, std::int64_t stride, int count, T* l, T* h)
-      {
-        for (int n = 0; n < count; n += 4)
-        {
-          std::array<const T*, 4> rows;
-          for (int m = 0; m < 4; ++m)
-          {
-            rows[m] = first + std::min(n + m, count - 1) * stride;
-          }
-          Accumulate(rows, size[0], guard, l, h);
-        }
-      };
+      LayerBuilder<T> builder(support, level);
       for (int k = static_cast<int>(begin); k < end; ++k)
       {
-        const Reach rz(k, FineShift, size[2], before, after);
-        int folded = 0; // rows before this one
-        for (int j = 0; j < level.Blocks[1]; ++j)
-        {
-          const Reach ry(j, FineShift, size[1], before, after);
-          for (; folded <= ry.Last; ++folded)
-          {
-            T* l = lows.data() + folded % ring * row;
-            T* h = highs.data() + folded % ring * row;
-            std::fill_n(l, row, Highest<T>());
-            std::fill_n(h, row, Lowest<T>());
-            fold(voxels + (static_cast<std::int64_t>(rz.First) * size[1] + folded) * size[0],
-              static_cast<std::int64_t>(size[0]) * size[1], rz.Last - rz.First + 1, l, h);
-          }
-          std::fill(low.begin(), low.end(), Highest<T>());
-          std::fill(high.begin(), high.end(), Lowest<T>());
-          for (int y = ry.First; y <= ry.Last; ++y)
-          {
-            const T* l = lows.data() + y % ring * row;
-            const T* h = highs.data() + y % ring * row;
-            for (std::size_t x = 0; x < row; ++x)
-            {
-              low[before + x] = l[x] < low[before + x] ? l[x] : low[before + x];
-              high[before + x] = h[x] > high[before + x] ? h[x] : high[before + x];
-            }
-          }
-          Slide(low, width, [](T a, T b) { return a < b ? a : b; });
-          Slide(high, width, [](T a, T b) { return a > b ? a : b; });
-          T* bounds = level.Bounds.data() + level.IndexOf(0, j, k);
-          for (int i = 0; i < level.Blocks[0]; ++i)
-          {
-            bounds[2 * i] = low[i << FineShift];
-            bounds[2 * i + 1] = high[i << FineShift];
-          }
-        }
+        builder.Build(k);
         const int layer = k >> step;
         const int layers = std::min(1 << step, level.Blocks[2] - (layer << step));
         if (++built[layer] == layers)
