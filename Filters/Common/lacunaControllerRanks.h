@@ -13,10 +13,9 @@ class vtkMultiProcessController;
 
 namespace lacuna
 {
-/// Ranks of a pvserver or pvbatch under MPI; one rank alone in any other program. Use it in
-/// RequestData of filters that ask all of their input on every rank, whatever piece is wanted: VTK
-/// executes these on all ranks when something has changed. A later request for another piece may
-/// come on some ranks only, so keep the whole result for it.
+/// Ranks of a pvserver or pvbatch under MPI; one rank alone in any other program. All
+/// ranks must call what exchanges data. VTK executes all of them when something has changed; a later
+/// request for another piece may come on some ranks only.
 class VTKLACUNAFILTERSCOMMON_EXPORT ControllerRanks : public Ranks
 {
 public:

@@ -112,7 +112,7 @@ public:
   static void SetGeometry(vtkImageData* map, const Geometry& geometry);
   static void SetGeometry(vtkImageData* map, const ImagePlane& plane);
 
-  /// What RequestInformation says of a map on plane: whole extent, geometry, type of the scalars.
+  /// What Announce says of a map on plane: whole extent, geometry, type of the scalars.
   static void SetInformation(vtkInformation* info, const ImagePlane& plane);
 
   /// True unless point is left open: its coordinates are VTK_DOUBLE_MAX, the default of points in

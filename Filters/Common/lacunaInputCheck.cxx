@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lacunaInputCheck.h"
 
-#include "lacunaControllerRanks.h"
 #include "vtkAbstractArray.h"
 #include "vtkCellData.h"
 #include "vtkCompositeDataIterator.h"
@@ -19,9 +18,7 @@
 #include "vtkStreamingDemandDrivenPipeline.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdint>
 #include <functional>
 #include <sstream>
 #include <stdexcept>
@@ -101,40 +98,6 @@ void CheckExtent(const std::string& name, const int extent[6])
       "; indices must be from -2^30 to 2^30");
   }
 }
-
-/// Three numbers of its size, and a hash of where it is.
-std::array<std::uint64_t, 4> GetFingerprint(vtkDataObject* data)
-{
-  std::array<std::uint64_t, 4> numbers{};
-  const auto hash = [&numbers](const void* values, std::size_t bytes)
-  {
-    const std::string_view text(static_cast<const char*>(values), bytes);
-    numbers[3] = 31 * numbers[3] + std::hash<std::string_view>{}(text);
-  };
-  if (auto* image = vtkImageData::SafeDownCast(data))
-  {
-    int dimensions[3];
-    image->GetDimensions(dimensions);
-    std::copy_n(dimensions, 3, numbers.begin());
-    hash(image->GetOrigin(), 3 * sizeof(double));
-    hash(image->GetSpacing(), 3 * sizeof(double));
-    hash(image->GetDirectionMatrix()->GetData(), 9 * sizeof(double));
-  }
-  else if (data)
-  {
-    numbers[0] = data->GetNumberOfElements(vtkDataObject::POINT);
-    numbers[1] = data->GetNumberOfElements(vtkDataObject::CELL);
-    numbers[2] = data->GetNumberOfElements(vtkDataObject::ROW);
-    auto* set = vtkPointSet::SafeDownCast(data);
-    vtkDataArray* points = set && set->GetPoints() ? set->GetPoints()->GetData() : nullptr;
-    if (points && points->GetNumberOfValues() > 0)
-    {
-      hash(points->GetVoidPointer(0),
-        static_cast<std::size_t>(points->GetNumberOfValues()) * points->GetDataTypeSize());
-    }
-  }
-  return numbers;
-}
 }
 
 //------------------------------------------------------------------------------
@@ -181,12 +144,37 @@ void lacuna::InputCheck::CheckPart(
 }
 
 //------------------------------------------------------------------------------
-bool lacuna::InputCheck::IsSame(vtkDataObject* data, const ControllerRanks& ranks)
+lacuna::InputCheck::Fingerprint lacuna::InputCheck::GetFingerprint(vtkDataObject* data)
 {
-  const auto own = GetFingerprint(data);
-  auto first = ranks.GetRank() > 0 ? decltype(own){} : own;
-  ranks.Sum(first.data(), static_cast<std::int64_t>(first.size()));
-  return own == first;
+  Fingerprint numbers{};
+  const auto hash = [&numbers](const void* values, std::size_t bytes)
+  {
+    const std::string_view text(static_cast<const char*>(values), bytes);
+    numbers[3] = 31 * numbers[3] + std::hash<std::string_view>{}(text);
+  };
+  if (auto* image = vtkImageData::SafeDownCast(data))
+  {
+    int dimensions[3];
+    image->GetDimensions(dimensions);
+    std::copy_n(dimensions, 3, numbers.begin());
+    hash(image->GetOrigin(), 3 * sizeof(double));
+    hash(image->GetSpacing(), 3 * sizeof(double));
+    hash(image->GetDirectionMatrix()->GetData(), 9 * sizeof(double));
+  }
+  else if (data)
+  {
+    numbers[0] = data->GetNumberOfElements(vtkDataObject::POINT);
+    numbers[1] = data->GetNumberOfElements(vtkDataObject::CELL);
+    numbers[2] = data->GetNumberOfElements(vtkDataObject::ROW);
+    auto* set = vtkPointSet::SafeDownCast(data);
+    vtkDataArray* points = set && set->GetPoints() ? set->GetPoints()->GetData() : nullptr;
+    if (points && points->GetNumberOfValues() > 0)
+    {
+      hash(points->GetVoidPointer(0),
+        static_cast<std::size_t>(points->GetNumberOfValues()) * points->GetDataTypeSize());
+    }
+  }
+  return numbers;
 }
 
 //------------------------------------------------------------------------------

@@ -7,15 +7,12 @@
 
 #include "vtkLacunaFiltersCommonModule.h" // for export macro
 
+#include <array>
+#include <cstdint>
 #include <string>
 
 class vtkDataObject;
 class vtkInformation;
-
-namespace lacuna
-{
-class ControllerRanks;
-}
 
 namespace lacuna::InputCheck
 {
@@ -29,8 +26,9 @@ VTKLACUNAFILTERSCOMMON_EXPORT void Check(vtkDataObject* data, const std::string&
 VTKLACUNAFILTERSCOMMON_EXPORT void CheckPart(
   vtkDataObject* data, vtkInformation* info, const std::string& name);
 
-/// Whether data are as large as those of the first rank, and lie where they do. All ranks must call it.
-VTKLACUNAFILTERSCOMMON_EXPORT bool IsSame(vtkDataObject* data, const ControllerRanks& ranks);
+/// Three numbers of its size, and a hash of where it is: data with the same are taken for the same.
+using Fingerprint = std::array<std::uint64_t, 4>;
+VTKLACUNAFILTERSCOMMON_EXPORT Fingerprint GetFingerprint(vtkDataObject* data);
 
 /// The array that Extract Selection adds to its output; null: it is none.
 VTKLACUNAFILTERSCOMMON_EXPORT const char* GetExtractedName(vtkDataObject* data);

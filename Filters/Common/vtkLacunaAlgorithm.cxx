@@ -7,11 +7,10 @@
 #include "lacunaMemory.h"
 #include "lacunaPrintableText.h"
 #include "lacunaProvenance.h"
+#include "lacunaRequest.h"
 #include "vtkAlgorithmOutput.h"
 #include "vtkCommand.h"
 #include "vtkCompositeDataSet.h"
-#include "vtkDataArray.h"
-#include "vtkDataSetAttributes.h"
 #include "vtkDemandDrivenPipeline.h"
 #include "vtkExtentTranslator.h"
 #include "vtkFieldData.h"
@@ -20,7 +19,6 @@
 #include "vtkInformationIntegerRequestKey.h"
 #include "vtkInformationVector.h"
 #include "vtkNew.h"
-#include "vtkPointSet.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkTable.h"
 
@@ -29,6 +27,7 @@
 #include <new>
 #include <sstream>
 #include <stdexcept>
+#include <string_view>
 
 using SDDP = vtkStreamingDemandDrivenPipeline;
 
@@ -42,29 +41,22 @@ const char* const OtherStopped = "another rank has stopped";
 
 bool (*ExecutesOnAllRanks)(vtkAlgorithm*) = nullptr;
 
-bool IsEmpty(const int* extent)
-{
-  return extent[0] > extent[1] || extent[2] > extent[3] || extent[4] > extent[5];
-}
-
-bool IsGrid(vtkInformation* info)
-{
-  vtkDataObject* data = vtkDataObject::GetData(info);
-  return data && data->GetExtentType() == VTK_3D_EXTENT;
-}
-
-/// Those of an image or another grid; null of other data, which may have the extent of what they were made of.
-const int* GetWhole(vtkInformation* info)
-{
-  return IsGrid(info) ? info->Get(SDDP::WHOLE_EXTENT()) : nullptr;
-}
-
 bool HasNoElements(vtkDataObject* data)
 {
   auto* set = vtkDataSet::SafeDownCast(data);
   auto* table = vtkTable::SafeDownCast(data);
   return !data || (set && set->GetNumberOfPoints() == 0) ||
     (table && table->GetNumberOfRows() == 0);
+}
+
+/// Follows an error that all ranks agreed on, and keep.
+constexpr std::string_view TryAgain = " (change a property to try again)";
+
+std::string WithoutHint(const std::string& error)
+{
+  const std::size_t at = error.rfind(TryAgain);
+  return at != std::string::npos && at + TryAgain.size() == error.size() ? error.substr(0, at)
+                                                                         : error;
 }
 
 /// The text of what body throws; empty when it came to its end.
@@ -94,61 +86,6 @@ std::string GetError(const Callable& body)
   }
 }
 
-/// Bytes of a point of an image in its active array, which is all that VTK announces behind a filter.
-double GetBytesPerPoint(vtkInformation* image)
-{
-  vtkInformation* array = vtkDataObject::GetActiveFieldInformation(
-    image, vtkDataObject::FIELD_ASSOCIATION_POINTS, vtkDataSetAttributes::SCALARS);
-  if (!array || !array->Has(vtkDataObject::FIELD_ARRAY_TYPE()))
-  {
-    return 1;
-  }
-  const int components = array->Has(vtkDataObject::FIELD_NUMBER_OF_COMPONENTS())
-    ? array->Get(vtkDataObject::FIELD_NUMBER_OF_COMPONENTS())
-    : 1;
-  return std::max(1, vtkDataArray::GetDataTypeSize(array->Get(vtkDataObject::FIELD_ARRAY_TYPE()))) *
-    static_cast<double>(std::max(1, components));
-}
-
-/// Throws when a part of an image that is not here yet does not fit into the memory.
-void RequireMemoryFor(vtkInformation* image, const std::array<int, 6>& part)
-{
-  vtkInformation* data = vtkDataObject::GetData(image)->GetInformation();
-  const int* here = data->Get(vtkDataObject::DATA_EXTENT());
-  bool isHere = here != nullptr;
-  for (int a = 0; isHere && a < 6; a += 2)
-  {
-    isHere = here[a] <= part[a] && part[a + 1] <= here[a + 1];
-  }
-  if (isHere || IsEmpty(part.data()))
-  {
-    return;
-  }
-  const int* whole = image->Get(SDDP::WHOLE_EXTENT());
-  std::ostringstream what;
-  what << "this filter takes "
-       << (std::equal(part.begin(), part.end(), whole) ? "its input as a whole"
-                                                       : "a part of its input")
-       << ", which with";
-  double size = GetBytesPerPoint(image);
-  for (int a = 0; a < 3; ++a)
-  {
-    const double points = static_cast<double>(part[2 * a + 1]) - part[2 * a] + 1;
-    size *= points;
-    what << (a > 0 ? " x " : " ") << points;
-  }
-  what << " points";
-  RequireMemory(what.str(), size);
-}
-
-/// One piece also of an image: whoever makes it would divide the extent once more.
-void AskForPiece(vtkInformation* input)
-{
-  input->Set(SDDP::UPDATE_PIECE_NUMBER(), 0);
-  input->Set(SDDP::UPDATE_NUMBER_OF_PIECES(), 1);
-  input->Set(SDDP::UPDATE_NUMBER_OF_GHOST_LEVELS(), 0);
-}
-
 bool TakesType(vtkAlgorithm* algorithm, int port, vtkDataObject* data)
 {
   vtkInformation* taken = algorithm->GetInputPortInformation(port);
@@ -174,41 +111,6 @@ void ForEachInput(vtkAlgorithm* algorithm, const Callable& body)
     }
   }
 }
-}
-
-//------------------------------------------------------------------------------
-std::string AskForExtent(vtkInformation* input, const std::array<int, 6>& extent)
-{
-  if (!GetWhole(input)) // blocks, which are refused
-  {
-    AskForPiece(input);
-    return {};
-  }
-  std::array<int, 6> asked = extent;
-  std::string refused = GetError([&] { RequireMemoryFor(input, extent); });
-  if (!refused.empty())
-  {
-    // Readers that use MPI end the program when they are asked for nothing.
-    const int* whole = input->Get(SDDP::WHOLE_EXTENT());
-    asked = { whole[0], whole[0], whole[2], whole[2], whole[4], whole[4] };
-  }
-  input->Set(SDDP::UPDATE_EXTENT(), asked.data(), 6);
-  AskForPiece(input);
-  return refused;
-}
-
-//------------------------------------------------------------------------------
-std::string AskForAll(vtkInformation* input)
-{
-  const int* whole = GetWhole(input);
-  if (!whole)
-  {
-    AskForPiece(input);
-    return {};
-  }
-  std::array<int, 6> extent{};
-  std::copy_n(whole, 6, extent.begin());
-  return AskForExtent(input, extent);
 }
 
 //------------------------------------------------------------------------------
@@ -461,15 +363,21 @@ int Algorithm::MakeOutputs(vtkInformationVector** inputs, vtkInformationVector* 
   std::string error;
   if (isSame && !this->Agreed.Error.empty())
   {
-    error = this->Agreed.Error + " (change a property to try again)";
+    error = WithoutHint(this->Agreed.Error).append(TryAgain);
   }
   else
   {
     const Ports ports(inputs, outputs, meet ? ranks : alone, haveMet);
-    error = agree(GetError([&] { this->CheckRequest(ports); }));
+    Fingerprints own; // here, where nobody waits for a rank that has no memory for it
+    error = agree(GetError(
+      [&]
+      {
+        this->CheckRequest(ports);
+        own = meet ? this->GetFingerprints() : own;
+      }));
     if (error.empty() && meet)
     {
-      error = agree(this->CompareInputs(ranks));
+      error = agree(this->CompareInputs(ranks, own));
     }
     if (error.empty())
     {
@@ -501,12 +409,24 @@ int Algorithm::MakeOutputs(vtkInformationVector** inputs, vtkInformationVector* 
 }
 
 //------------------------------------------------------------------------------
-std::string Algorithm::CompareInputs(const lacuna::ControllerRanks& ranks) const
+Algorithm::Fingerprints Algorithm::GetFingerprints() const
+{
+  Fingerprints result;
+  ForEachInput(this->Self,
+    [&](int port, int i, vtkInformation*)
+    { result.push_back(InputCheck::GetFingerprint(this->Self->GetInputDataObject(port, i))); });
+  return result;
+}
+
+//------------------------------------------------------------------------------
+std::string Algorithm::CompareInputs(
+  const lacuna::ControllerRanks& ranks, const Fingerprints& own) const
 {
   if (this->Sharing == Share::Parts)
   {
     return {};
   }
+  auto next = own.begin();
   std::string differs;
   std::string extracted;
   ForEachInput(this->Self,
@@ -515,7 +435,9 @@ std::string Algorithm::CompareInputs(const lacuna::ControllerRanks& ranks) const
       vtkDataObject* data = this->Self->GetInputDataObject(port, i);
       // what only the first rank makes is nowhere else
       const bool isElsewhere = this->Sharing == Share::FirstRank && HasNoElements(data);
-      if (!InputCheck::IsSame(data, ranks) && !isElsewhere)
+      auto first = ranks.GetRank() > 0 ? InputCheck::Fingerprint{} : *next;
+      ranks.Sum(first.data(), static_cast<std::int64_t>(first.size()));
+      if (first != *next++ && !isElsewhere)
       {
         differs = "the inputs are not the same on all ranks: a filter before this one gives each "
                   "rank a part, or all to the first, or the nodes have other files; save the data "
@@ -631,19 +553,26 @@ void Algorithm::CheckInputs(const Ports& ports, int only) const
       throw std::runtime_error(error);
     }
   };
+  const auto forEach = [&](const auto& body)
+  {
+    ForEachInput(this->Self,
+      [&](int port, int i, vtkInformation* info)
+      {
+        if (only < 0 || port == only)
+        {
+          body(port, ports.GetInput<vtkDataObject>(port, i), info);
+        }
+      });
+  };
+  forEach([&](int, vtkDataObject* data, vtkInformation*) { require(Errors::GetOf(data)); });
   require(this->Announced);
   require(this->Refused);
-  ForEachInput(this->Self,
-    [&](int port, int i, vtkInformation* info)
+  forEach(
+    [&](int port, vtkDataObject* data, vtkInformation* info)
     {
-      if (only < 0 || port == only)
-      {
-        const std::string name = "input " + std::to_string(port);
-        auto* data = ports.GetInput<vtkDataObject>(port, i);
-        require(lacuna::Errors::GetOf(data));
-        lacuna::InputCheck::Check(data, name);
-        lacuna::InputCheck::CheckPart(data, info, name);
-      }
+      const std::string name = "input " + std::to_string(port);
+      InputCheck::Check(data, name);
+      InputCheck::CheckPart(data, info, name);
     });
 }
 
@@ -680,8 +609,9 @@ void Algorithm::Fail(vtkInformationVector* outputs, const std::string& error)
     return;
   }
   const std::vector<double> times = this->GetTimes();
-  const bool isShown = (this->Shown.Times == times && this->Shown.Error == error) ||
-    lacuna::Errors::GetUpstream(this->Self) == error;
+  const std::string bare = WithoutHint(error);
+  const bool isShown = (this->Shown.Times == times && this->Shown.Error == bare) ||
+    WithoutHint(lacuna::Errors::GetUpstream(this->Self)) == bare;
   if (isShown)
   {
     lacuna::Errors::Repeat(this->Self, error);
@@ -689,7 +619,7 @@ void Algorithm::Fail(vtkInformationVector* outputs, const std::string& error)
   }
   if (!this->Self->HasObserver(vtkCommand::ErrorEvent)) // who may keep it to himself
   {
-    this->Shown = { times, error };
+    this->Shown = { times, bare };
   }
   vtkErrorWithObjectMacro(this->Self, << error);
 }

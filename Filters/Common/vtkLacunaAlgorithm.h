@@ -2,12 +2,13 @@
 /// @file
 /// The base of Lacuna's sources, readers and filters.
 ///
-/// An algorithm says in its constructor how ranks share its work (Share), and implements Announce (what comes out),
-/// Make (the work) and Describe (its properties, what each may be). The base does the rest: it refuses values that no
-/// property may have, asks for the input, refuses what is not sound or does not fit into the memory, reports progress,
-/// stops, empties the outputs after an error, brings errors to all ranks, crops images, prints the properties, and
-/// records the provenance with the marks of laterality and coordinates. VTK calls RequestData, which calls MakeOutputs,
-/// which calls Make.
+/// An algorithm says in its constructor how ranks share its work (Share), and implements Make (the work) and Describe
+/// (its properties, what each may be). Where the outputs have another grid or type than the first input it implements
+/// Announce, and where it needs another part of the input than its share, Ask. The base does the rest: it refuses values
+/// that no property may have, asks for the input, refuses what is not sound or does not fit into the memory, reports
+/// progress, stops, empties the outputs after an error, brings errors to all ranks, crops images, prints the properties,
+/// and records the provenance with the marks of laterality and coordinates. VTK calls RequestData, which calls
+/// MakeOutputs, which calls Make.
 #ifndef vtkLacunaAlgorithm_h
 #define vtkLacunaAlgorithm_h
 
@@ -19,7 +20,7 @@
 #include "vtkLacunaFiltersCommonModule.h" // for export macro
 
 #include <array>
-#include <functional>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -32,17 +33,11 @@ namespace lacuna
 /// How the ranks of an MPI program share the work of an algorithm.
 enum class Share
 {
-  Parts,    ///< each rank asks for what its part of the output needs
-  EachRank, ///< each rank has the whole input, and makes its part of the output
-  FirstRank, ///< each rank has the whole input; who is asked for the first piece makes all, the others nothing
-  Together ///< each rank has the whole input; all ranks work for one result (Ports::Ranks)
+  Parts,     ///< each rank asks for what its part of the output needs
+  EachRank,  ///< each rank has the whole input, and makes its part of the output
+  FirstRank, ///< each rank has the whole input; the first one, of meshes who is asked for the first piece, makes all
+  Together   ///< each rank has the whole input; all ranks work for one result (Ports::Ranks)
 };
-
-/// Asks for an extent of an image, or for all of an input. What does not fit into the memory is not asked for, but one
-/// point of it; returns why, else an empty text.
-VTKLACUNAFILTERSCOMMON_EXPORT std::string AskForExtent(
-  vtkInformation* input, const std::array<int, 6>& extent);
-VTKLACUNAFILTERSCOMMON_EXPORT std::string AskForAll(vtkInformation* input);
 
 /// The inputs and outputs of an algorithm, as VTK passes them.
 class VTKLACUNAFILTERSCOMMON_EXPORT Ports
@@ -167,7 +162,9 @@ private:
 
   void RefuseBlocks();
   void CheckInputs(const Ports& ports, int only = -1) const;
-  std::string CompareInputs(const lacuna::ControllerRanks& ranks) const;
+  using Fingerprints = std::vector<std::array<std::uint64_t, 4>>; // of all inputs
+  Fingerprints GetFingerprints() const;
+  std::string CompareInputs(const lacuna::ControllerRanks& ranks, const Fingerprints& own) const;
   void CheckRequest(const Ports& ports) const;
   bool HasWork(const Ports& ports) const;
   void Finish(const Ports& ports) const;
@@ -190,6 +187,7 @@ private:
 #endif
 
 /// A class of VTK as one of Lacuna's algorithms: derive from vtkLacunaAlgorithmOf(vtkImageAlgorithm) and its like.
+/// Superclass is VTK's class there: a call of its RequestData or RequestInformation would pass this base by.
 template <class Super>
 class vtkLacunaAlgorithm
   : public Super

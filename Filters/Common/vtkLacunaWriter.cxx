@@ -6,10 +6,10 @@
 #include "lacunaInputCheck.h"
 #include "lacunaOutputFile.h"
 #include "lacunaPrintableText.h"
+#include "lacunaRequest.h"
 #include "vtkErrorCode.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
-#include "vtkLacunaAlgorithm.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 
 #include <new>

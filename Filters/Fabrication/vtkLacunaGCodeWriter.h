@@ -43,9 +43,6 @@ public:
   vtkTypeMacro(vtkLacunaGCodeWriter, vtkLacunaWriter);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
-  /** Updates the input and writes. Returns 1, or 0 when there is no new file, also because a filter
-   * before this one failed. */
-
   ///@{
   /** The file to write, usually *.nc or *.gcode. */
   vtkSetFilePathMacro(FileName);

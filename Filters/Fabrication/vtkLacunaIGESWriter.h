@@ -7,7 +7,7 @@
  *
  * | input                                       | in the file                                   |
  * |---------------------------------------------|-----------------------------------------------|
- * | depth map (vtkImageData, lacuna::DepthMap) | a bicubic B-spline surface (128), of Fitted   |
+ * | depth map (vtkImageData, lacuna::DepthMap)  | a bicubic B-spline surface (128), of Fitted   |
  * |                                             | where there is one; the defect's outline as   |
  * |                                             | curve (126), or trimmed to it (144, 142, 126) |
  * | vtkStructuredGrid with one dimension of 1   | a bicubic B-spline surface (128)              |
@@ -64,9 +64,6 @@ public:
   static vtkLacunaIGESWriter* New();
   vtkTypeMacro(vtkLacunaIGESWriter, vtkLacunaWriter);
   void PrintSelf(ostream& os, vtkIndent indent) override;
-
-  /** Updates the input and writes. Returns 1, or 0 when there is no new file, also because a filter
-   * before this one failed. */
 
   ///@{
   /** The file to write, usually *.igs or *.iges. */

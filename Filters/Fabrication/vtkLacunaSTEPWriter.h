@@ -37,9 +37,6 @@ public:
   vtkTypeMacro(vtkLacunaSTEPWriter, vtkLacunaWriter);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
-  /** Updates the input and writes. Returns 1, or 0 when there is no new file, also because a filter
-   * before this one failed. */
-
   ///@{
   /** The file to write, usually *.step or *.stp. */
   vtkSetFilePathMacro(FileName);

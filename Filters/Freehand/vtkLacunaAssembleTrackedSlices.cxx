@@ -167,7 +167,7 @@ void vtkLacunaAssembleTrackedSlices::Announce(const lacuna::Ports& ports)
 //------------------------------------------------------------------------------
 void vtkLacunaAssembleTrackedSlices::Ask(const lacuna::Ports& ports)
 {
-  this->Algorithm::Ask(ports); // the table as a whole
+  this->AskForWhole(ports.GetInputInformation(1)); // the table
   vtkInformation* in = ports.GetInputInformation();
   const std::array<int, 6> wanted = GetPart(ports.GetOutputInformation());
   // Whole pictures: which rows are wanted is known when the order of rows is.

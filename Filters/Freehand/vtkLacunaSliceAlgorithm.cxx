@@ -23,7 +23,7 @@ int vtkLacunaSliceAlgorithm::ProcessRequest(
 {
   // Slices that change with time change the output's place: it is found again when the time is known.
   // Its extent stays as it was: VTK does not tell those downstream of another one, who would cut it
-  // off. RequestData compares the two.
+  // off. Make compares the two.
   if (request->Has(SDDP::REQUEST_TIME_DEPENDENT_INFORMATION()))
   {
     vtkInformation* output = outputs->GetInformationObject(0);

@@ -91,7 +91,6 @@ lacuna::SpeckleParameters MakeParameters(vtkLacunaSpeckleFilter* self, const dou
   return parameters;
 }
 
-/// Only what the operation uses.
 bool IsTrackedSlices(vtkDataObject* data)
 {
   return data->GetFieldData()->HasArray(lacuna::TrackedSlices::ImageToReferenceName) ||

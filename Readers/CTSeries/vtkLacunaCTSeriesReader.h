@@ -29,7 +29,7 @@
  * hash of the series' UID instead (64-bit FNV-1a of its text).
  *
  * Requested extents are honoured: only the images of the slices asked for are read. What hinders a
- * volume is an error of RequestData, with the files that were left out; until then the extent is
+ * volume is an error that comes with the data, with the files that were left out; until then the extent is
  * empty. Errors set vtkErrorCode::FileNotFoundError or FileFormatError. Source: DICOM PS3.3 C.7.6.2, C.7.6.16, C.8.2;
  * Carr 1996, 6.7.1 (slices missing or displaced).
  */

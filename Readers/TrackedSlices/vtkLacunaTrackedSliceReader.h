@@ -197,7 +197,7 @@ private:
   bool ReplayInTime = false;
   int MemoryLimit = 0;
   std::string Preview;
-  /// The file as RequestInformation found it; kept open from one requested extent to the next.
+  /// The file as Announce found it; kept open from one requested extent to the next.
   std::unique_ptr<Sequence> Opened;
 };
 #endif

@@ -23,8 +23,8 @@
  * says so (lacuna::Coordinates: NRRD with one of the spaces above, NIfTI with the code 1 or 2),
  * `Provenance`, with a hash of the file's name, which may be the patient's.
  *
- * Requested extents are honoured. What hinders a volume is an error of RequestData; until then the
- * extent is empty. Errors set vtkErrorCode::FileNotFoundError or FileFormatError.
+ * Requested extents are honoured. What hinders a volume is an error that comes with the data; until
+ * then the extent is empty. Errors set vtkErrorCode::FileNotFoundError or FileFormatError.
  */
 #ifndef vtkLacunaVolumeReader_h
 #define vtkLacunaVolumeReader_h

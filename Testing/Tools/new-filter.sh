@@ -14,7 +14,11 @@ if ! [[ $name =~ ^[A-Z][A-Za-z0-9]+$ ]] || [ ! -f "Filters/$module/vtk.module" ]
 fi
 class=vtkLacuna$name
 folder=Filters/$module
-if compgen -G "*/*/$class.h" >/dev/null; then echo "$0: there is a $class" >&2; exit 2; fi
+if [ "$module" = Common ]; then echo "$0: Common has the bases; take the folder of a subject" >&2; exit 2; fi
+for file in $(compgen -G "*/*/$class.h") "$folder/Testing/Cxx/Test$name.cxx" "Plugins/Lacuna/Filters/$name.xml" \
+  "Plugins/Lacuna/Resources/Icons/$name.svg"; do
+  if [ -e "$file" ]; then echo "$0: there is a $file" >&2; exit 2; fi
+done
 label=$(sed -E 's/([a-z0-9])([A-Z])/\1 \2/g' <<<"$name")
 export=VTKLACUNAFILTERS${module^^}_EXPORT
 
@@ -72,6 +76,7 @@ cat >"$folder/$class.cxx" <<END
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
 
+#include <cstdint>
 #include <stdexcept>
 
 vtkStandardNewMacro($class);
@@ -89,17 +94,20 @@ void $class::Make(const lacuna::Ports& ports, lacuna::AlgorithmExecution& execut
   auto* output = ports.GetOutput<vtkImageData>();
   lacuna::VolumeDirection::Check(input);
   vtkDataArray* from = input->GetPointData()->GetScalars();
-  if (!from)
+  if (!from || from->GetNumberOfComponents() != 1)
   {
-    throw std::runtime_error("input 0 has no active scalars: choose an array");
+    throw std::runtime_error("input 0 has no active scalars of one component: choose an array");
   }
   output->CopyStructure(input);
   vtkDataArray* to = lacuna::Arrays::AddScalars(output, from->GetDataType(), from->GetName());
-  for (vtkIdType i = 0; i < to->GetNumberOfTuples(); ++i)
-  {
-    to->SetTuple1(i, this->Factor * from->GetComponent(i, 0));
-  }
-  execution.Report(1);
+  execution.For(to->GetNumberOfTuples(), 4096, // by all threads, with progress; stops when the user does
+    [&](std::int64_t begin, std::int64_t end)
+    {
+      for (std::int64_t i = begin; i < end; ++i)
+      {
+        to->SetComponent(i, 0, this->Factor * from->GetComponent(i, 0));
+      }
+    });
 }
 
 //------------------------------------------------------------------------------
@@ -186,6 +194,9 @@ if command -v clang-format-14 >/dev/null; then
   clang-format-14 -i "$folder/$class".{h,cxx} "$folder/Testing/Cxx/Test$name.cxx"
 fi
 
+for list in "$folder/CMakeLists.txt" "$folder/Testing/Cxx/CMakeLists.txt" Plugins/Lacuna/{CMakeLists.txt,LacunaMenus.xml,Resources/lacuna.qrc}; do
+  grep -q "$name" "$list" || { echo "$0: $list does not name it: do it by hand" >&2; exit 1; }
+done
 git status --short
 echo "next: cmake --build build/release, then ctest --test-dir build/release -R Test$name (it fails until it is written);
 what else a filter has: ctest -R 'ProxyConventions|WindowMenus', and \"A new filter\" in Documentation/DeveloperGuide/architecture.md"

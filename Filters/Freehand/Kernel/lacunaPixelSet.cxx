@@ -32,9 +32,9 @@ PixelSet PixelSet::Flipped() const
   return flipped;
 }
 
-PixelBox PixelSet::GetBounds() const
+PixelRectangle PixelSet::GetBounds() const
 {
-  PixelBox box;
+  PixelRectangle box;
   this->ForEach([&](int column, int row) { box.Put(column, row); });
   return box;
 }
@@ -101,10 +101,10 @@ std::vector<PixelPart> PixelSet::GetParts() const
   return parts;
 }
 
-std::array<std::vector<PixelBox>, 2> PixelSet::GetLines() const
+std::array<std::vector<PixelRectangle>, 2> PixelSet::GetLines() const
 {
-  std::vector<PixelBox> rows(static_cast<std::size_t>(this->Height));
-  std::vector<PixelBox> columns(static_cast<std::size_t>(this->Width));
+  std::vector<PixelRectangle> rows(static_cast<std::size_t>(this->Height));
+  std::vector<PixelRectangle> columns(static_cast<std::size_t>(this->Width));
   this->ForEach(
     [&](int column, int row)
     {

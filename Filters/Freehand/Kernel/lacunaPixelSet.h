@@ -15,7 +15,7 @@
 namespace lacuna
 {
 /// A box of pixels: first column and row, and those behind the last.
-struct PixelBox
+struct PixelRectangle
 {
   int Left = std::numeric_limits<int>::max();
   int Top = std::numeric_limits<int>::max();
@@ -41,7 +41,7 @@ struct PixelBox
 /// A connected part of a set.
 struct PixelPart
 {
-  PixelBox Bounds;
+  PixelRectangle Bounds;
   std::vector<std::pair<int, int>> Pixels; ///< column, row
 
   /// Of the pixels for which isSo(column, row) is true.
@@ -90,7 +90,7 @@ public:
   void Put(int column, int row) { this->Members[this->Index(column, row)] = 1; }
   void Put(const PixelPart& part);
   std::int64_t GetSize() const;
-  PixelBox GetBounds() const;
+  PixelRectangle GetBounds() const;
 
   /// Calls f(column, row) for each, row by row.
   template <class Function>
@@ -120,7 +120,7 @@ public:
   std::vector<PixelPart> GetParts() const;
 
   /// The outermost pixels of each row, and of each column.
-  std::array<std::vector<PixelBox>, 2> GetLines() const;
+  std::array<std::vector<PixelRectangle>, 2> GetLines() const;
 
 private:
   std::size_t Index(int column, int row) const

@@ -96,7 +96,7 @@ struct Screen
 struct StillThings
 {
   PixelSet Furniture, Others;
-  std::vector<PixelBox> Words;
+  std::vector<PixelRectangle> Words;
   double LetterLevel = 0; ///< 0: there are too few
   double Flicker = 0;
 };
@@ -113,7 +113,7 @@ StillThings FindStillThings(const Screen& screen, int letter)
   for (const PixelPart& part : still.GetParts())
   {
     const double thickness = part.GetFraction([&](int x, int y) { return thick.Has(x, y); });
-    const PixelBox& box = part.Bounds;
+    const PixelRectangle& box = part.Bounds;
     const auto size = static_cast<double>(part.Pixels.size());
     const bool isBox = size > FilledBox * box.GetArea() && size < LargestBox * width * height;
     const int smaller = std::min(box.GetWidth(), box.GetHeight());
@@ -148,14 +148,14 @@ StillThings FindStillThings(const Screen& screen, int letter)
 // A figure of a clock, or several.
 bool IsText(const PixelPart& part, const StillThings& still, const Screen& screen, int letter)
 {
-  const PixelBox& box = part.Bounds;
+  const PixelRectangle& box = part.Bounds;
   if (box.GetHeight() > letter || box.GetWidth() > 6 * letter)
   {
     return false;
   }
   const bool isInLine = box.GetWidth() <= 3 * letter &&
     std::any_of(still.Words.begin(), still.Words.end(),
-      [&](const PixelBox& word)
+      [&](const PixelRectangle& word)
       {
         return box.Top >= word.Top - 2 && box.Bottom <= word.Bottom + 2 &&
           std::max(box.Left - word.Right, word.Left - box.Right) <= letter;
@@ -198,7 +198,7 @@ PixelSet FindMoving(const Screen& screen)
       moving.Put(part);
     }
   }
-  const PixelBox box = moving.GetBounds();
+  const PixelRectangle box = moving.GetBounds();
   for (const PixelPart& part : still.Others.GetParts())
   {
     if (part.GetFraction([&](int x, int y) { return box.Has(x, y); }) >= 0.5)
@@ -256,9 +256,9 @@ public:
     , Bounds(set.GetBounds())
   {
     // the outermost pixels of rows and columns say all but the near radius at the sides
-    for (const std::vector<PixelBox>& lines : set.GetLines())
+    for (const std::vector<PixelRectangle>& lines : set.GetLines())
     {
-      for (const PixelBox& line : lines)
+      for (const PixelRectangle& line : lines)
       {
         if (line.Right > 0)
         {
@@ -346,7 +346,7 @@ public:
 
   const PixelSet& Set;
   double Aspect;
-  PixelBox Bounds;
+  PixelRectangle Bounds;
 
 private:
   std::vector<Vec2> Outermost, Samples;
@@ -391,7 +391,7 @@ Proposal TryWedge(const PixelSet& moving, double aspect)
       beam.Nearest = std::min(beam.Nearest, radius);
       beam.Farthest = std::max(beam.Farthest, radius);
     });
-  const PixelBox& box = search.Bounds;
+  const PixelRectangle& box = search.Bounds;
   int free = 0, confirmed = 0;
   double all = 0, between = 0;
   for (std::size_t d = 0; d < beams.size(); ++d)
@@ -425,15 +425,15 @@ Proposal TryWedge(const PixelSet& moving, double aspect)
 }
 
 // Part of a box that lies between the outermost pixels of rows, or of columns.
-double GetBetween(const PixelSet& set, const PixelBox& box)
+double GetBetween(const PixelSet& set, const PixelRectangle& box)
 {
   const auto [rows, columns] = set.GetLines();
   double inRows = 0, inColumns = 0;
-  for (const PixelBox& row : rows)
+  for (const PixelRectangle& row : rows)
   {
     inRows += row.Right > 0 ? row.GetWidth() : 0;
   }
-  for (const PixelBox& column : columns)
+  for (const PixelRectangle& column : columns)
   {
     inColumns += column.Right > 0 ? column.GetHeight() : 0;
   }
@@ -550,7 +550,7 @@ ScanRegion ScanOutline::Propose(const Vec2& pixelSpacing) const
                            : "besides texts nothing changes";
     return region;
   }
-  const PixelBox box = moving.GetBounds();
+  const PixelRectangle box = moving.GetBounds();
   if (box.GetArea() < SmallestBox * size)
   {
     region.Text =

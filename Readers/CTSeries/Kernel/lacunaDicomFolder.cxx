@@ -172,7 +172,11 @@ std::map<std::string, DicomFolder::Entry> DicomFolder::List(
       const auto known = this->Files.find(name);
       const bool same = known != this->Files.end() && known->second.Size == entry.Size &&
         known->second.Time == entry.Time;
-      files.emplace(std::move(name), same ? known->second : std::move(entry));
+      if (same)
+      {
+        entry = known->second;
+      }
+      files.emplace(std::move(name), std::move(entry));
       if (files.size() > MostFiles)
       {
         throw std::runtime_error(
