@@ -236,7 +236,7 @@ def transparent(rank):
         opacity.AddPoint(*value)
     filter = occluded_angle(wavelet(20), False)
     filter.SetInputData(image)
-    filter.SetAttenuation(filter.OPACITY_FUNCTION)
+    filter.SetAttenuation(filter.ByOpacityFunction)
     filter.SetOpacityFunction(opacity)
     text = update(filter)
     assert "attenuates" in text, text
