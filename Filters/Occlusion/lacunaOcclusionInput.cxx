@@ -157,7 +157,7 @@ void Fill(lacuna::AttenuationField& field, vtkImageData* image, vtkDataArray* sc
     return static_cast<float>(
       binary ? (attenuation >= least ? 1.0 : 0.0) : std::min(attenuation, largest));
   };
-  if (conversion.Attenuation == vtkLacunaOccludedAngle::ARRAY)
+  if (conversion.Attenuation == vtkLacunaOccludedAngle::ByArray)
   {
     FillWith(field, scalars, execution,
       [=](double value, vtkIdType i)
@@ -169,7 +169,7 @@ void Fill(lacuna::AttenuationField& field, vtkImageData* image, vtkDataArray* sc
         return finish(value);
       });
   }
-  else if (conversion.Attenuation == vtkLacunaOccludedAngle::OPACITY_FUNCTION)
+  else if (conversion.Attenuation == vtkLacunaOccludedAngle::ByOpacityFunction)
   {
     vtkPiecewiseFunction* function = conversion.Function;
     if (!function || function->GetSize() == 0)

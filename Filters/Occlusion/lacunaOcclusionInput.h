@@ -42,7 +42,7 @@ vtkDataArray* FindScalars(vtkImageData* image, const std::string& name);
 struct Conversion
 {
   int Attenuation;                ///< vtkLacunaOccludedAngle::Attenuations
-  vtkPiecewiseFunction* Function; ///< for OPACITY_FUNCTION
+  vtkPiecewiseFunction* Function; ///< for ByOpacityFunction
   bool Binary;                    ///< to 1 where half of a ray is taken, else to 0
 };
 

@@ -6,7 +6,6 @@
 #include "lacunaFunctionText.h"
 #include "lacunaMemory.h"
 #include "lacunaOcclusionInput.h"
-#include "lacunaParameterText.h"
 #include "lacunaShapeGrowth.h"
 #include "lacunaVolumeDirection.h"
 #include "vtkAlgorithmOutput.h"
@@ -23,6 +22,7 @@
 #include "vtkUnsignedCharArray.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <memory>
@@ -38,6 +38,9 @@ using Pipeline = vtkStreamingDemandDrivenPipeline;
 
 namespace
 {
+constexpr std::array<const char*, 2> ModeNames{ "Continuous", "Binary" };
+constexpr std::array<const char*, 3> AttenuationNames{ "Linear in Range", "Opacity Function",
+  "Array" };
 const int MaximumNumberOfDirections = 10000000;
 const double Pi = 3.14159265358979323846;
 
@@ -67,11 +70,6 @@ public:
     , Grid(input)
     , Scalars(lacuna::OcclusionInput::FindScalars(input, self->ScalarArray))
   {
-    if (self->NumberOfDirections < 2 || self->NumberOfDirections > MaximumNumberOfDirections)
-    {
-      throw std::runtime_error("NumberOfDirections is " + std::to_string(self->NumberOfDirections) +
-        "; give 2 to " + std::to_string(MaximumNumberOfDirections));
-    }
     std::ostringstream what;
     what << "the occluded angle of " << this->Grid.GetSize() << " voxels";
     const double kept = self->KeepIterations ? 5.0 * self->ThresholdsOverPi.size() : 0;
@@ -79,11 +77,11 @@ public:
       (12.0 + kept + lacuna::GetOccludedAngleMemory(self->NumberOfDirections)) *
         static_cast<double>(this->Grid.GetSize()));
 
-    this->Options = this->GetOptions();
+    this->Options = this->GetOptionsWithSteps();
     this->Field =
       std::make_unique<lacuna::AttenuationField>(this->Grid.Dimensions, this->Grid.Spacing);
     lacuna::OcclusionInput::Fill(*this->Field, this->Input, this->Scalars,
-      { self->Attenuation, self->OpacityFunction, self->Mode == BINARY }, execution);
+      { self->Attenuation, self->OpacityFunction, self->Mode == Binary }, execution);
     lacuna::OcclusionInput::CutSpace(
       *this->Field, this->Input, this->Space, self->ReconstructionSpace);
     this->Angle->SetName("OccludedAngle");
@@ -129,7 +127,7 @@ public:
   }
 
 private:
-  lacuna::GrowthOptions GetOptions() const
+  lacuna::GrowthOptions GetOptionsWithSteps() const
   {
     const std::vector<double>& thresholds = this->Self->ThresholdsOverPi;
     const std::vector<double>& radii = this->Self->LocalRadii;
@@ -140,23 +138,14 @@ private:
         "; give one radius for all iterations or one per threshold");
     }
     const double half = this->Grid.Axes == 2 ? 1 : 2;
-    lacuna::GrowthOptions options;
-    options.Binary = this->Self->Mode == BINARY;
-    options.Directions = this->Self->NumberOfDirections + this->Self->NumberOfDirections % 2;
-    options.ObjectOpacity = this->Self->ObjectOpacity;
-    options.Dilation = this->Self->Dilation;
-    options.KeepData = this->Self->KeepData;
-    options.MedianKernel = this->Self->MedianKernel;
+    lacuna::GrowthOptions options = this->Self->GetOptions();
     for (std::size_t i = 0; i < thresholds.size(); ++i)
     {
       const double radius = radii.empty() ? 0 : radii[radii.size() == 1 ? 0 : i];
-      if (!(thresholds[i] >= 0 && thresholds[i] <= 2 * half) || !(radius >= 0))
+      if (thresholds[i] > 2 * half)
       {
-        std::ostringstream message;
-        message << "iteration " << i + 1 << " has the threshold " << thresholds[i]
-                << " pi and the radius " << radius << " mm; a threshold must be between 0 and "
-                << 2 * half << " pi, a radius not negative";
-        throw std::runtime_error(message.str());
+        throw std::runtime_error("ThresholdsOverPi is " + lacuna::FormatNumber(thresholds[i]) +
+          "; in a 2-D image it must be at most 2");
       }
       options.Steps.push_back({ (thresholds[i] == 0 ? half : thresholds[i]) * Pi, radius });
     }
@@ -409,51 +398,33 @@ void vtkLacunaOccludedAngle::Make(const lacuna::Ports& ports, lacuna::AlgorithmE
 }
 
 //------------------------------------------------------------------------------
-std::string vtkLacunaOccludedAngle::Parameters(int) const
+lacuna::GrowthOptions vtkLacunaOccludedAngle::GetOptions() const
 {
-  lacuna::ParameterText parameters;
-  parameters.Add("ScalarArray", this->ScalarArray)
-    .Add("Mode", this->Mode == BINARY ? "Binary" : "Continuous")
-    .Add("Attenuation", this->Attenuation)
-    .Add("NumberOfDirections", this->NumberOfDirections)
-    .Add("ThresholdsOverPi", this->ThresholdsOverPi)
-    .Add("LocalRadii", this->LocalRadii)
-    .Add("ObjectOpacity", this->ObjectOpacity)
-    .Add("Dilation", this->Dilation)
-    .Add("KeepData", this->KeepData)
-    .Add("MedianKernel", this->MedianKernel);
-  if (this->Attenuation == OPACITY_FUNCTION)
-  {
-    parameters.Add("OpacityFunction", GetNodes(this->OpacityFunction));
-  }
-  return parameters
-    .Add("ReconstructionSpace", lacuna::FunctionText::Describe(this->ReconstructionSpace))
-    .Get();
+  lacuna::GrowthOptions options;
+  options.Binary = this->Mode == Binary;
+  options.Directions = this->NumberOfDirections + this->NumberOfDirections % 2;
+  options.ObjectOpacity = this->ObjectOpacity;
+  options.Dilation = this->Dilation;
+  options.KeepData = this->KeepData;
+  options.MedianKernel = this->MedianKernel;
+  return options;
 }
 
 //------------------------------------------------------------------------------
-void vtkLacunaOccludedAngle::PrintSelf(ostream& os, vtkIndent indent)
+void vtkLacunaOccludedAngle::Describe(lacuna::Properties& properties) const
 {
-  this->Superclass::PrintSelf(os, indent);
-  os << indent << "ScalarArray: " << this->ScalarArray << "\n";
-  os << indent << "Mode: " << (this->Mode == BINARY ? "Binary" : "Continuous") << "\n";
-  os << indent << "Attenuation: " << this->Attenuation << "\n";
-  os << indent << "OpacityFunction: " << this->OpacityFunction.Get() << "\n";
-  os << indent << "NumberOfDirections: " << this->NumberOfDirections << "\n";
-  os << indent << "ThresholdsOverPi:";
-  for (double threshold : this->ThresholdsOverPi)
+  properties.Add("ScalarArray", this->ScalarArray)
+    .Add("Mode", this->Mode, ModeNames)
+    .Add("Attenuation", this->Attenuation, AttenuationNames)
+    .Add("NumberOfDirections", this->NumberOfDirections,
+      lacuna::ValueRange::Between(2, MaximumNumberOfDirections))
+    .Add("ThresholdsOverPi", this->ThresholdsOverPi, lacuna::ValueRange::Between(0, 4))
+    .Add("LocalRadii", this->LocalRadii, lacuna::ValueRange::Above(0, "mm").OrZero("whole space"));
+  this->GetOptions().Describe(properties);
+  if (this->Attenuation == ByOpacityFunction && this->OpacityFunction)
   {
-    os << " " << threshold;
+    properties.Add("OpacityFunction", GetNodes(this->OpacityFunction));
   }
-  os << "\n" << indent << "LocalRadii:";
-  for (double radius : this->LocalRadii)
-  {
-    os << " " << radius;
-  }
-  os << "\n" << indent << "ObjectOpacity: " << this->ObjectOpacity << "\n";
-  os << indent << "Dilation: " << this->Dilation << "\n";
-  os << indent << "KeepData: " << this->KeepData << "\n";
-  os << indent << "MedianKernel: " << this->MedianKernel << "\n";
-  os << indent << "ReconstructionSpace: " << this->ReconstructionSpace.Get() << "\n";
-  os << indent << "KeepIterations: " << this->KeepIterations << "\n";
+  properties.Add("ReconstructionSpace", lacuna::FunctionText::Describe(this->ReconstructionSpace))
+    .Add("KeepIterations", this->KeepIterations);
 }

@@ -43,24 +43,28 @@ class vtkImageData;
 class vtkImplicitFunction;
 class vtkPiecewiseFunction;
 
+namespace lacuna
+{
+struct GrowthOptions;
+}
+
 class VTKLACUNAFILTERSOCCLUSION_EXPORT vtkLacunaOccludedAngle
   : public vtkLacunaAlgorithmOf(vtkImageAlgorithm)
 {
 public:
   static vtkLacunaOccludedAngle* New();
   vtkTypeMacro(vtkLacunaOccludedAngle, vtkImageAlgorithm);
-  void PrintSelf(ostream& os, vtkIndent indent) override;
 
   enum Modes
   {
-    CONTINUOUS = 0,
-    BINARY = 1
+    Continuous = 0,
+    Binary = 1
   };
   enum Attenuations
   {
-    LINEAR_IN_RANGE = 0,
-    OPACITY_FUNCTION = 1,
-    ARRAY = 2
+    LinearInRange = 0,
+    ByOpacityFunction = 1,
+    ByArray = 2
   };
 
   ///@{
@@ -70,24 +74,24 @@ public:
   ///@}
 
   ///@{
-  /// CONTINUOUS: a ray is hidden by 1 - exp(-attenuation along it). BINARY: by the first voxel it
+  /// Continuous: a ray is hidden by 1 - exp(-attenuation along it). Binary: by the first voxel it
   /// meets that takes half of a ray or more (opacity from ln 2 / ln 20 = 0.23); such voxels are
-  /// hidden themselves. Default CONTINUOUS.
-  vtkSetClampMacro(Mode, int, CONTINUOUS, BINARY);
+  /// hidden themselves. Default Continuous.
+  vtkSetMacro(Mode, int);
   vtkGetMacro(Mode, int);
   ///@}
 
   ///@{
-  /// How grey levels become attenuation. LINEAR_IN_RANGE: opacity 0 at the lowest to 1 at the
-  /// highest level of the input. OPACITY_FUNCTION: by OpacityFunction. ARRAY: the scalars are
+  /// How grey levels become attenuation. LinearInRange: opacity 0 at the lowest to 1 at the
+  /// highest level of the input. ByOpacityFunction: by OpacityFunction. ByArray: the scalars are
   /// attenuation coefficients per mm. A voxel of opacity o attenuates by o ln 20 over its shortest
-  /// edge: one of opacity 1 takes 95 % of a ray (Carr 1996, section 5.6). Default LINEAR_IN_RANGE.
-  vtkSetClampMacro(Attenuation, int, LINEAR_IN_RANGE, ARRAY);
+  /// edge: one of opacity 1 takes 95 % of a ray (Carr 1996, section 5.6). Default LinearInRange.
+  vtkSetMacro(Attenuation, int);
   vtkGetMacro(Attenuation, int);
   ///@}
 
   ///@{
-  /// Opacity (0...1) as a function of grey level, for Attenuation OPACITY_FUNCTION. Default none.
+  /// Opacity (0...1) as a function of grey level, for Attenuation ByOpacityFunction. Default none.
   void SetOpacityFunction(vtkPiecewiseFunction* function);
   vtkPiecewiseFunction* GetOpacityFunction() const;
   ///@}
@@ -125,7 +129,7 @@ public:
   ///@}
 
   ///@{
-  /// In Mode BINARY voxels hide as if they were larger by this, 0...0.9 voxels, so that gaps of that
+  /// In Mode Binary voxels hide as if they were larger by this, 0...0.9 voxels, so that gaps of that
   /// width between them are closed. Default 0: cubes of one voxel.
   vtkSetMacro(Dilation, double);
   vtkGetMacro(Dilation, double);
@@ -140,7 +144,8 @@ public:
   ///@}
 
   ///@{
-  /// Edge length in voxels, odd, of a median filter on the angle before it is thresholded; 1: none.
+  /// Edge length in voxels, odd, at most 255, of a median filter on the angle before it is
+  /// thresholded; 1: none.
   /// Default 1.
   vtkSetMacro(MedianKernel, int);
   vtkGetMacro(MedianKernel, int);
@@ -177,11 +182,11 @@ protected:
   void Announce(const lacuna::Ports& ports) override;
   void Ask(const lacuna::Ports& ports) override;
   void Make(const lacuna::Ports& ports, lacuna::AlgorithmExecution& execution) override;
-  std::string Parameters(int port) const override;
+  void Describe(lacuna::Properties& properties) const override;
 
   std::string ScalarArray;
-  int Mode = CONTINUOUS;
-  int Attenuation = LINEAR_IN_RANGE;
+  int Mode = Continuous;
+  int Attenuation = LinearInRange;
   vtkSmartPointer<vtkPiecewiseFunction> OpacityFunction;
   int NumberOfDirections = 1000;
   std::vector<double> ThresholdsOverPi = { 0 };
@@ -198,6 +203,7 @@ private:
   void operator=(const vtkLacunaOccludedAngle&) = delete;
 
   class Run;
+  lacuna::GrowthOptions GetOptions() const; // without the steps
 
   /// The iterations kept (the last one for ranks), and when they were made.
   std::vector<vtkSmartPointer<vtkImageData>> Iterations;

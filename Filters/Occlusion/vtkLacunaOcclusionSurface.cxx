@@ -6,7 +6,6 @@
 #include "lacunaMemory.h"
 #include "lacunaOcclusionInput.h"
 #include "lacunaOcclusionSurface.h"
-#include "lacunaParameterText.h"
 #include "lacunaVolumeDirection.h"
 #include "vtkAlgorithmOutput.h"
 #include "vtkCellArray.h"
@@ -54,7 +53,7 @@ std::vector<unsigned char> FindData(vtkImageData* image, const lacuna::Occlusion
 {
   lacuna::AttenuationField field(grid.Dimensions, grid.Spacing);
   lacuna::OcclusionInput::Fill(field, image, lacuna::OcclusionInput::FindScalars(image, name),
-    { vtkLacunaOccludedAngle::LINEAR_IN_RANGE, nullptr, true }, execution);
+    { vtkLacunaOccludedAngle::LinearInRange, nullptr, true }, execution);
   std::vector<unsigned char> data(grid.GetSize());
   const auto& n = grid.Dimensions;
   for (std::int64_t k = 0; k < n[2]; ++k)
@@ -218,11 +217,8 @@ void vtkLacunaOcclusionSurface::Make(
   const lacuna::OcclusionImages images{ grid.Dimensions, grid.Spacing,
     const_cast<vtkFloatArray*>(theta)->GetPointer(0),
     const_cast<vtkUnsignedCharArray*>(object)->GetPointer(0), data.data() };
-  lacuna::OcclusionSurfaceOptions options;
-  options.Smoothing = this->Smoothing;
-  options.Tolerance = this->Tolerance;
   execution.SetStage(0, 0.85);
-  const lacuna::OcclusionSurface fit(execution, images, options);
+  const lacuna::OcclusionSurface fit(execution, images, this->GetOptions());
   execution.SetStage(0.85, 0.95);
   const std::vector<float> values = fit.EvaluateGrid(execution);
   vtkSmartPointer<vtkPolyData> surface = FindContour(values, grid);
@@ -295,20 +291,17 @@ void vtkLacunaOcclusionSurface::WarnOfCavity(
 }
 
 //------------------------------------------------------------------------------
-std::string vtkLacunaOcclusionSurface::Parameters(int) const
+lacuna::OcclusionSurfaceOptions vtkLacunaOcclusionSurface::GetOptions() const
 {
-  return lacuna::ParameterText()
-    .Add("ScalarArray", this->ScalarArray)
-    .Add("Smoothing", this->Smoothing)
-    .Add("Tolerance", this->Tolerance)
-    .Get();
+  lacuna::OcclusionSurfaceOptions options;
+  options.Smoothing = this->Smoothing;
+  options.Tolerance = this->Tolerance;
+  return options;
 }
 
 //------------------------------------------------------------------------------
-void vtkLacunaOcclusionSurface::PrintSelf(ostream& os, vtkIndent indent)
+void vtkLacunaOcclusionSurface::Describe(lacuna::Properties& properties) const
 {
-  this->Superclass::PrintSelf(os, indent);
-  os << indent << "ScalarArray: " << this->ScalarArray << "\n";
-  os << indent << "Smoothing: " << this->Smoothing << "\n";
-  os << indent << "Tolerance: " << this->Tolerance << "\n";
+  properties.Add("ScalarArray", this->ScalarArray);
+  this->GetOptions().Describe(properties);
 }

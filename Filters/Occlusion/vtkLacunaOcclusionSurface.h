@@ -36,6 +36,7 @@ class vtkImageData;
 
 namespace lacuna
 {
+struct OcclusionSurfaceOptions;
 struct OcclusionSurfaceReport;
 }
 
@@ -45,7 +46,6 @@ class VTKLACUNAFILTERSOCCLUSION_EXPORT vtkLacunaOcclusionSurface
 public:
   static vtkLacunaOcclusionSurface* New();
   vtkTypeMacro(vtkLacunaOcclusionSurface, vtkPolyDataAlgorithm);
-  void PrintSelf(ostream& os, vtkIndent indent) override;
 
   ///@{
   /// The point array of input 1 with the data. Default empty: the active scalars.
@@ -73,7 +73,7 @@ protected:
   ~vtkLacunaOcclusionSurface() override = default;
   int FillInputPortInformation(int port, vtkInformation* info) override;
   void Make(const lacuna::Ports& ports, lacuna::AlgorithmExecution& execution) override;
-  std::string Parameters(int port) const override;
+  void Describe(lacuna::Properties& properties) const override;
 
   std::string ScalarArray;
   double Smoothing = 1;
@@ -83,6 +83,7 @@ private:
   vtkLacunaOcclusionSurface(const vtkLacunaOcclusionSurface&) = delete;
   void operator=(const vtkLacunaOcclusionSurface&) = delete;
 
+  lacuna::OcclusionSurfaceOptions GetOptions() const;
   void WarnOfFit(
     const lacuna::OcclusionSurfaceReport& report, double edge); ///< edge: of a voxel, mm
   void WarnOfCavity(const lacuna::OcclusionSurfaceReport& report, vtkImageData* angle);

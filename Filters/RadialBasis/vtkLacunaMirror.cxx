@@ -9,7 +9,6 @@
 #include "lacunaMirrored.h"
 #include "lacunaMirroredMap.h"
 #include "lacunaMirroredVolume.h"
-#include "lacunaParameterText.h"
 #include "lacunaVolumeDirection.h"
 #include "lacunaVolumeSymmetry.h"
 #include "vtkCellArray.h"
@@ -49,6 +48,7 @@ vtkStandardNewMacro(vtkLacunaMirror);
 namespace
 {
 constexpr const char* AsymmetryName = "Asymmetry";
+constexpr std::array<const char*, 2> PlaneMethodNames{ "BestSymmetry", "Given" };
 
 using SDDP = vtkStreamingDemandDrivenPipeline;
 
@@ -202,10 +202,9 @@ public:
     {
       const lacuna::Vec3 normal{ self->Normal[0], self->Normal[1], self->Normal[2] };
       const lacuna::Vec3 origin{ self->Origin[0], self->Origin[1], self->Origin[2] };
-      if (!HasDirection(normal) || !IsFinite(origin))
+      if (!HasDirection(normal))
       {
-        throw std::runtime_error(
-          "Origin and Normal must be numbers, and Normal not 0 0 0, nor too long");
+        throw std::runtime_error("Normal must not be 0 0 0, nor too long");
       }
       result.Plane.Normal = Normalized(normal);
       result.Plane.Offset = Dot(result.Plane.Normal, origin);
@@ -448,7 +447,6 @@ void vtkLacunaMirror::Make(const lacuna::Ports& ports, lacuna::AlgorithmExecutio
   bool isMap = false;
   const auto check = [&]
   {
-    this->CheckProperties();
     if (lacuna::Mirrored::IsMarked(input))
     {
       throw std::runtime_error("the input is a mirror image already (field data Mirrored); mirror "
@@ -491,15 +489,15 @@ void vtkLacunaMirror::Make(const lacuna::Ports& ports, lacuna::AlgorithmExecutio
   Internals::Warn(this, result);
 
   const lacuna::Vec3 origin = Internals::OriginOf(input, result.Plane);
-  lacuna::ParameterText parameters;
-  parameters.Add("PlaneMethod", this->PlaneMethod)
+  lacuna::Properties parameters;
+  parameters.Add("PlaneMethod", this->PlaneMethod, PlaneMethodNames)
     .Add("Origin", origin.Elements)
     .Add("Normal", result.Plane.Normal.Elements);
   if (!isMap)
   {
-    parameters.Add("Interpolation", this->Interpolation);
+    parameters.Add("Interpolation", this->Interpolation, lacuna::MirrorInterpolationNames);
   }
-  this->Made = parameters.Get();
+  this->Made = parameters.GetText();
   auto* plane = ports.GetOutput<vtkPolyData>(1);
   if (ports.IsFirst())
   {
@@ -516,34 +514,16 @@ void vtkLacunaMirror::Make(const lacuna::Ports& ports, lacuna::AlgorithmExecutio
 }
 
 //------------------------------------------------------------------------------
-void vtkLacunaMirror::CheckProperties() const
+void vtkLacunaMirror::Describe(lacuna::Properties& properties) const
 {
-  if (this->PlaneMethod != BestSymmetry && this->PlaneMethod != Given)
-  {
-    throw std::runtime_error("PlaneMethod is " + std::to_string(this->PlaneMethod) +
-      "; it must be 0 (BestSymmetry) or 1 (Given)");
-  }
-  if (this->Interpolation < BSpline || this->Interpolation > Nearest)
-  {
-    throw std::runtime_error("Interpolation is " + std::to_string(this->Interpolation) +
-      "; it must be 0 (BSpline), 1 (Linear) or 2 (Nearest)");
-  }
+  properties.Add("PlaneMethod", this->PlaneMethod, PlaneMethodNames)
+    .Add("Origin", this->Origin, lacuna::ValueRange::Any("mm"))
+    .Add("Normal", this->Normal, lacuna::ValueRange::Any())
+    .Add("Interpolation", this->Interpolation, lacuna::MirrorInterpolationNames);
 }
 
 //------------------------------------------------------------------------------
 std::string vtkLacunaMirror::Parameters(int) const
 {
   return this->Made;
-}
-
-//------------------------------------------------------------------------------
-void vtkLacunaMirror::PrintSelf(ostream& os, vtkIndent indent)
-{
-  this->Superclass::PrintSelf(os, indent);
-  os << indent << "PlaneMethod: " << this->PlaneMethod << "\n";
-  os << indent << "Origin: " << this->Origin[0] << " " << this->Origin[1] << " " << this->Origin[2]
-     << "\n";
-  os << indent << "Normal: " << this->Normal[0] << " " << this->Normal[1] << " " << this->Normal[2]
-     << "\n";
-  os << indent << "Interpolation: " << this->Interpolation << "\n";
 }

@@ -54,7 +54,6 @@ class VTKLACUNAFILTERSRADIALBASIS_EXPORT vtkLacunaMirror
 public:
   static vtkLacunaMirror* New();
   vtkTypeMacro(vtkLacunaMirror, vtkImageAlgorithm);
-  void PrintSelf(ostream& os, vtkIndent indent) override;
 
   enum PlaneMethodType
   {
@@ -102,6 +101,7 @@ protected:
   int FillOutputPortInformation(int port, vtkInformation* info) override;
   void Announce(const lacuna::Ports& ports) override;
   void Make(const lacuna::Ports& ports, lacuna::AlgorithmExecution& execution) override;
+  void Describe(lacuna::Properties& properties) const override;
   std::string Parameters(int port) const override;
 
 private:
@@ -109,8 +109,6 @@ private:
   void operator=(const vtkLacunaMirror&) = delete;
 
   class Internals;
-
-  void CheckProperties() const;
 
   int PlaneMethod = BestSymmetry;
   double Origin[3] = { 0, 0, 0 };

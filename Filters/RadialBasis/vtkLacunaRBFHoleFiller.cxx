@@ -149,15 +149,6 @@ lacuna::SurfaceSheet GetSheet(vtkImageData* prior, const lacuna::Matrix4& toMap)
   }
   return sheet;
 }
-
-void CheckChoice(const char* property, int value, int last, const char* choices)
-{
-  if (value < 0 || value > last)
-  {
-    throw std::runtime_error(
-      std::string(property) + " is " + std::to_string(value) + "; it must be " + choices);
-  }
-}
 }
 
 //------------------------------------------------------------------------------
@@ -245,6 +236,7 @@ void vtkLacunaRBFHoleFiller::Announce(const lacuna::Ports& ports)
   }
   if (whole[1] >= whole[0] && whole[3] >= whole[2])
   {
+    this->CheckProperties();
     const lacuna::MapGrid grid = lacuna::GetOutputGrid(GetGrid(whole, spacing), this->GetOptions());
     whole[0] = grid.FirstColumn;
     whole[1] = grid.FirstColumn + grid.Width - 1;
@@ -260,10 +252,6 @@ void vtkLacunaRBFHoleFiller::Announce(const lacuna::Ports& ports)
 //------------------------------------------------------------------------------
 lacuna::HoleFillOptions vtkLacunaRBFHoleFiller::GetOptions() const
 {
-  CheckChoice("Kernel", this->Kernel, Multiquadric,
-    "0 (ThinPlate), 1 (Linear), 2 (Triharmonic), 3 (Cubic), 4 (Gaussian) or 5 (Multiquadric)");
-  CheckChoice("Solver", this->Solver, Fast, "0 (Auto), 1 (Direct) or 2 (Fast)");
-  CheckChoice("Trend", this->Trend, Ellipsoid, "0 (NoTrend) or 1 (Ellipsoid)");
   lacuna::HoleFillOptions options;
   options.Kernel = static_cast<lacuna::RadialKernel>(this->Kernel);
   options.KernelLength = this->KernelLength;
@@ -287,8 +275,6 @@ void vtkLacunaRBFHoleFiller::MarkDefect(lacuna::AlgorithmExecution& execution, v
   auto* surface = ports.GetInput<vtkDataSet>(SurfacePort);
   auto* selection = ports.GetInput<vtkSelection>(SelectionPort);
   marked.Defect.assign(marked.Grid.GetSize(), 0);
-  where.Add("DefectRegion", lacuna::FunctionText::Describe(this->DefectRegion))
-    .Add("DefectArray", this->DefectArray);
   if (!this->SupportArray.empty())
   {
     marked.Painted = lacuna::DefectMarks::FromArray(map, this->SupportArray, "SupportArray");
@@ -380,20 +366,6 @@ void vtkLacunaRBFHoleFiller::Make(const lacuna::Ports& ports, lacuna::AlgorithmE
   vtkNew<vtkImageData> filled;
   lacuna::FilledMap::Make(map, contract, result, options.Kernel, marked > 0, filled);
 
-  parameters.Add("Kernel", this->Kernel)
-    .Add("KernelLength", this->KernelLength)
-    .Add("Trend", this->Trend)
-    .Add("SupportArray", this->SupportArray)
-    .Add("SupportMargin", this->SupportMargin)
-    .Add("SupportStepMargin", this->SupportStepMargin)
-    .Add("NodeSpacing", this->NodeSpacing)
-    .Add("Smoothing", this->Smoothing)
-    .Add("CutoffWavelength", this->CutoffWavelength)
-    .Add("ControlDepthArray", this->ControlDepthArray)
-    .Add("OutputMargin", this->OutputMargin)
-    .Add("OutputSpacing", this->OutputSpacing)
-    .Add("Accuracy", this->Accuracy)
-    .Add("Solver", this->Solver);
   std::vector<double> coordinates;
   for (const lacuna::Vec3& p : input.ControlPoints)
   {
@@ -419,30 +391,17 @@ std::vector<vtkDataObject*> vtkLacunaRBFHoleFiller::GetOrigins(const lacuna::Por
 }
 
 //------------------------------------------------------------------------------
-std::string vtkLacunaRBFHoleFiller::Parameters(int) const
+void vtkLacunaRBFHoleFiller::Describe(lacuna::Properties& properties) const
 {
-  return this->Made;
+  properties.Add("DefectRegion", lacuna::FunctionText::Describe(this->DefectRegion))
+    .Add("DefectArray", this->DefectArray)
+    .Add("SupportArray", this->SupportArray)
+    .Add("ControlDepthArray", this->ControlDepthArray);
+  this->GetOptions().Describe(properties);
 }
 
 //------------------------------------------------------------------------------
-void vtkLacunaRBFHoleFiller::PrintSelf(ostream& os, vtkIndent indent)
+std::string vtkLacunaRBFHoleFiller::Parameters(int port) const
 {
-  this->Superclass::PrintSelf(os, indent);
-  os << indent << "Kernel: " << this->Kernel << "\n";
-  os << indent << "KernelLength: " << this->KernelLength << "\n";
-  os << indent << "Trend: " << this->Trend << "\n";
-  os << indent << "DefectRegion: " << this->DefectRegion.Get() << "\n";
-  os << indent << "DefectArray: " << this->DefectArray << "\n";
-  os << indent << "SupportArray: " << this->SupportArray << "\n";
-  os << indent << "SupportMargin: " << this->SupportMargin << "\n";
-  os << indent << "SupportStepMargin: " << this->SupportStepMargin << "\n";
-  os << indent << "NodeSpacing: " << this->NodeSpacing << "\n";
-  os << indent << "Smoothing: " << this->Smoothing << "\n";
-  os << indent << "CutoffWavelength: " << this->CutoffWavelength << "\n";
-  os << indent << "ControlDepthArray: " << this->ControlDepthArray << "\n";
-  os << indent << "OutputMargin: " << this->OutputMargin << "\n";
-  os << indent << "OutputSpacing: " << this->OutputSpacing[0] << " " << this->OutputSpacing[1]
-     << " " << this->OutputSpacing[2] << "\n";
-  os << indent << "Accuracy: " << this->Accuracy << "\n";
-  os << indent << "Solver: " << this->Solver << "\n";
+  return this->Made + " " + this->Algorithm::Parameters(port);
 }

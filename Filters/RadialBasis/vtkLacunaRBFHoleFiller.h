@@ -71,7 +71,6 @@ class VTKLACUNAFILTERSRADIALBASIS_EXPORT vtkLacunaRBFHoleFiller
 public:
   static vtkLacunaRBFHoleFiller* New();
   vtkTypeMacro(vtkLacunaRBFHoleFiller, vtkImageAlgorithm);
-  void PrintSelf(ostream& os, vtkIndent indent) override;
 
   /// Input ports; all but the first are optional.
   enum InputPort
@@ -262,6 +261,7 @@ protected:
   int FillInputPortInformation(int port, vtkInformation* info) override;
   void Announce(const lacuna::Ports& ports) override;
   void Make(const lacuna::Ports& ports, lacuna::AlgorithmExecution& execution) override;
+  void Describe(lacuna::Properties& properties) const override;
   std::string Parameters(int port) const override;
   std::vector<vtkDataObject*> GetOrigins(const lacuna::Ports& ports) const override;
 
@@ -270,7 +270,6 @@ private:
   void operator=(const vtkLacunaRBFHoleFiller&) = delete;
 
   void SetArrayName(std::string& member, const char* name);
-  /// Throws std::runtime_error when a choice is none of those there are.
   lacuna::HoleFillOptions GetOptions() const;
   /// Adds to where what says which pixels are marked, and how.
   void MarkDefect(lacuna::AlgorithmExecution& execution, vtkImageData* map,
@@ -293,6 +292,6 @@ private:
   double Accuracy = 1e-4;
   int Solver = Auto;
   std::unique_ptr<lacuna::HoleFiller> Filler; // keeps equations while control points move
-  std::string Made;                           ///< parameters of the last map
+  std::string Made;                           ///< which pixels of the last map were marked
 };
 #endif

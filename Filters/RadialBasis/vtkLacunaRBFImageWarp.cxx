@@ -5,7 +5,6 @@
 #include "lacunaFieldData.h"
 #include "lacunaLandmarkWarp.h"
 #include "lacunaMemory.h"
-#include "lacunaParameterText.h"
 #include "lacunaVolumeDirection.h"
 #include "lacunaWarpedPart.h"
 #include "vtkCellData.h"
@@ -36,6 +35,9 @@ vtkStandardNewMacro(vtkLacunaRBFImageWarp);
 
 namespace
 {
+constexpr std::array<const char*, 4> KernelNames{ "ThinPlate", "Linear", "Triharmonic", "Cubic" };
+constexpr std::array<const char*, 3> InterpolationNames{ "Nearest", "Linear", "Cubic" };
+
 // Share of folded voxels in the box around the targets from which on they are no accident: noise of
 // landmarks folds a tenth of a per cent there, and a third of all pairs on the wrong side 3 %; a head
 // of which most is mirrored within a frame of landmarks that stay where they are, a quarter. Beyond
@@ -345,19 +347,9 @@ void vtkLacunaRBFImageWarp::Prepare(const lacuna::Ports& ports, Task& task) cons
             << "equal index";
     throw std::runtime_error(message.str());
   }
-  if (this->Kernel < ThinPlate || this->Kernel > Cubic)
+  if (this->Accuracy == 1)
   {
-    throw std::runtime_error("Kernel is " + std::to_string(this->Kernel) +
-      "; it must be 0 (ThinPlate), 1 (Linear), 2 (Triharmonic) or 3 (Cubic)");
-  }
-  if (this->Interpolation < Nearest || this->Interpolation > CubicInterpolation)
-  {
-    throw std::runtime_error("Interpolation is " + std::to_string(this->Interpolation) +
-      "; it must be 0 (Nearest), 1 (Linear) or 2 (Cubic)");
-  }
-  if (!(this->Accuracy > 0) || !(this->Accuracy < 1))
-  {
-    throw std::runtime_error("Accuracy must be a number of voxels above 0 and below 1");
+    throw std::runtime_error("Accuracy is 1 voxel; it must be less");
   }
   task.Space.emplace(task.Image);
   task.From = task.Space->GetPoints(landmarks);
@@ -470,24 +462,11 @@ void vtkLacunaRBFImageWarp::SetOutput(
 }
 
 //------------------------------------------------------------------------------
-std::string vtkLacunaRBFImageWarp::Parameters(int) const
+void vtkLacunaRBFImageWarp::Describe(lacuna::Properties& properties) const
 {
-  return lacuna::ParameterText()
-    .Add("Kernel", this->Kernel)
-    .Add("Smoothing", this->Smoothing)
-    .Add("Interpolation", this->Interpolation)
+  properties.Add("Kernel", this->Kernel, KernelNames)
+    .Add("Smoothing", this->Smoothing, lacuna::ValueRange::AtLeast(0))
+    .Add("Interpolation", this->Interpolation, InterpolationNames)
     .Add("OutsideValue", this->OutsideValue)
-    .Add("Accuracy", this->Accuracy)
-    .Get();
-}
-
-//------------------------------------------------------------------------------
-void vtkLacunaRBFImageWarp::PrintSelf(ostream& os, vtkIndent indent)
-{
-  this->Superclass::PrintSelf(os, indent);
-  os << indent << "Kernel: " << this->Kernel << "\n";
-  os << indent << "Smoothing: " << this->Smoothing << "\n";
-  os << indent << "Interpolation: " << this->Interpolation << "\n";
-  os << indent << "OutsideValue: " << this->OutsideValue << "\n";
-  os << indent << "Accuracy: " << this->Accuracy << "\n";
+    .Add("Accuracy", this->Accuracy, lacuna::ValueRange::Above(0, "voxels").UpTo(1));
 }

@@ -57,7 +57,6 @@ class VTKLACUNAFILTERSRADIALBASIS_EXPORT vtkLacunaRBFImageWarp
 public:
   static vtkLacunaRBFImageWarp* New();
   vtkTypeMacro(vtkLacunaRBFImageWarp, vtkImageAlgorithm);
-  void PrintSelf(ostream& os, vtkIndent indent) override;
 
   enum KernelType
   {
@@ -118,7 +117,7 @@ protected:
   int FillInputPortInformation(int port, vtkInformation* info) override;
   void Announce(const lacuna::Ports& ports) override;
   void Make(const lacuna::Ports& ports, lacuna::AlgorithmExecution& execution) override;
-  std::string Parameters(int port) const override;
+  void Describe(lacuna::Properties& properties) const override;
 
 private:
   vtkLacunaRBFImageWarp(const vtkLacunaRBFImageWarp&) = delete;

@@ -6,7 +6,6 @@
 #include "lacunaCenterReduction.h"
 #include "lacunaFieldData.h"
 #include "lacunaMemory.h"
-#include "lacunaParameterText.h"
 #include "lacunaRadialBasis.h"
 #include "lacunaVolumeDirection.h"
 #include "vtkAlgorithmOutput.h"
@@ -63,10 +62,6 @@ struct OutputGrid
       {
         this->Axes.push_back(c);
       }
-      if (!std::isfinite(bounds[2 * c]) || !std::isfinite(bounds[2 * c + 1]))
-      {
-        throw std::runtime_error("OutputBounds must be finite numbers");
-      }
       const double* from = bounds[2 * c] > bounds[2 * c + 1] ? own : bounds;
       std::copy_n(from + 2 * c, 2, ends + 2 * c);
       if (!std::isfinite(ends[2 * c]) || !std::isfinite(ends[2 * c + 1]))
@@ -79,10 +74,6 @@ struct OutputGrid
     double count = 1;
     for (std::size_t c = 0; c < 3; ++c)
     {
-      if (!std::isfinite(spacing[c]) || spacing[c] < 0)
-      {
-        throw std::runtime_error("OutputSpacing must be three finite numbers >= 0");
-      }
       const bool flat = std::find(this->Axes.begin(), this->Axes.end(), c) == this->Axes.end();
       double step = spacing[c] > 0 ? spacing[c] : longest / AutomaticSteps;
       step = step > 0 ? step : 1;
@@ -253,6 +244,7 @@ void vtkLacunaRBFInterpolator::Announce(const lacuna::Ports& ports)
   lacuna::VolumeDirection::AnnounceAlongAxes(info);
   if (points && points->GetNumberOfPoints() > 0)
   {
+    this->CheckProperties();
     const OutputGrid to(points, this->OutputSpacing, this->OutputBounds);
     for (int c = 0; c < 3; ++c)
     {
@@ -273,10 +265,15 @@ void vtkLacunaRBFInterpolator::Make(
   auto* output = ports.GetOutput<vtkImageData>();
   output->GetFieldData()->Initialize(); // VTK passes the points' own
   lacuna::VolumeDirection::Check(points);
-  this->CheckProperties();
+  if (this->CenterTolerance > 0 && !this->ErrorArray.empty())
+  {
+    throw std::runtime_error("ErrorArray cannot be used together with CenterTolerance, which "
+                             "holds for all values alike: empty one, or set the other to 0");
+  }
   const OutputGrid to(points, this->OutputSpacing, this->OutputBounds);
   vtkDataArray* array = FindArray(points, this->ScalarArray, "ScalarArray");
-  const lacuna::RadialBasisOptions options = this->GetOptions(points);
+  lacuna::RadialBasisOptions options = this->GetOptions();
+  options.Errors = this->GetErrors(points);
   int whole[6];
   int piece[6]; // of ranks, which share the evaluation: each fits for itself
   vtkInformation* info = ports.GetOutputInformation();
@@ -317,32 +314,7 @@ void vtkLacunaRBFInterpolator::Make(
 }
 
 //------------------------------------------------------------------------------
-void vtkLacunaRBFInterpolator::CheckProperties() const
-{
-  if (this->Kernel < ThinPlate || this->Kernel > Multiquadric)
-  {
-    throw std::runtime_error("Kernel is " + std::to_string(this->Kernel) +
-      "; it must be 0 (ThinPlate), 1 (Linear), 2 (Triharmonic), 3 (Cubic), 4 (Gaussian) or 5 "
-      "(Multiquadric)");
-  }
-  if (this->Solver < Auto || this->Solver > Fast)
-  {
-    throw std::runtime_error("Solver is " + std::to_string(this->Solver) +
-      "; it must be 0 (Auto), 1 (Direct) or 2 (Fast)");
-  }
-  if (!(this->CenterTolerance >= 0) || !std::isfinite(this->CenterTolerance))
-  {
-    throw std::runtime_error("CenterTolerance must be a finite number >= 0");
-  }
-  if (this->CenterTolerance > 0 && !this->ErrorArray.empty())
-  {
-    throw std::runtime_error("ErrorArray cannot be used together with CenterTolerance, which "
-                             "holds for all values alike: empty one, or set the other to 0");
-  }
-}
-
-//------------------------------------------------------------------------------
-lacuna::RadialBasisOptions vtkLacunaRBFInterpolator::GetOptions(vtkDataSet* points) const
+lacuna::RadialBasisOptions vtkLacunaRBFInterpolator::GetOptions() const
 {
   lacuna::RadialBasisOptions options;
   options.Kernel = static_cast<lacuna::RadialKernel>(this->Kernel);
@@ -350,52 +322,30 @@ lacuna::RadialBasisOptions vtkLacunaRBFInterpolator::GetOptions(vtkDataSet* poin
   options.Smoothing = this->Smoothing;
   options.Accuracy = this->Accuracy;
   options.Solver = static_cast<lacuna::RadialSolver>(this->Solver);
+  return options;
+}
+
+//------------------------------------------------------------------------------
+std::vector<double> vtkLacunaRBFInterpolator::GetErrors(vtkDataSet* points) const
+{
+  std::vector<double> list;
   if (!this->ErrorArray.empty())
   {
     vtkDataArray* errors = FindArray(points, this->ErrorArray, "ErrorArray");
     for (vtkIdType i = 0; i < errors->GetNumberOfTuples(); ++i)
     {
-      options.Errors.push_back(errors->GetComponent(i, 0));
+      list.push_back(errors->GetComponent(i, 0));
     }
   }
-  return options;
+  return list;
 }
 
 //------------------------------------------------------------------------------
-std::string vtkLacunaRBFInterpolator::Parameters(int) const
+void vtkLacunaRBFInterpolator::Describe(lacuna::Properties& properties) const
 {
-  return lacuna::ParameterText()
-    .Add("ScalarArray", this->ScalarArray)
-    .Add("Kernel", this->Kernel)
-    .Add("KernelLength", this->KernelLength)
-    .Add("Smoothing", this->Smoothing)
-    .Add("ErrorArray", this->ErrorArray)
-    .Add("Accuracy", this->Accuracy)
-    .Add("Solver", this->Solver)
-    .Add("CenterTolerance", this->CenterTolerance)
-    .Add("OutputSpacing", this->OutputSpacing)
-    .Add("OutputBounds", this->OutputBounds)
-    .Get();
-}
-
-//------------------------------------------------------------------------------
-void vtkLacunaRBFInterpolator::PrintSelf(ostream& os, vtkIndent indent)
-{
-  this->Superclass::PrintSelf(os, indent);
-  os << indent << "ScalarArray: " << this->ScalarArray << "\n";
-  os << indent << "Kernel: " << this->Kernel << "\n";
-  os << indent << "KernelLength: " << this->KernelLength << "\n";
-  os << indent << "Smoothing: " << this->Smoothing << "\n";
-  os << indent << "ErrorArray: " << this->ErrorArray << "\n";
-  os << indent << "Accuracy: " << this->Accuracy << "\n";
-  os << indent << "Solver: " << this->Solver << "\n";
-  os << indent << "CenterTolerance: " << this->CenterTolerance << "\n";
-  os << indent << "OutputSpacing: " << this->OutputSpacing[0] << " " << this->OutputSpacing[1]
-     << " " << this->OutputSpacing[2] << "\n";
-  os << indent << "OutputBounds:";
-  for (const double b : this->OutputBounds)
-  {
-    os << " " << b;
-  }
-  os << "\n";
+  properties.Add("ScalarArray", this->ScalarArray).Add("ErrorArray", this->ErrorArray);
+  this->GetOptions().Describe(properties);
+  properties.Add("CenterTolerance", this->CenterTolerance, lacuna::ValueRange::AtLeast(0))
+    .Add("OutputSpacing", this->OutputSpacing, lacuna::ValueRange::AtLeast(0))
+    .Add("OutputBounds", this->OutputBounds, lacuna::ValueRange::Any());
 }

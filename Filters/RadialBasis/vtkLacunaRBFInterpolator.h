@@ -38,6 +38,7 @@
 #include "vtkLacunaFiltersRadialBasisModule.h" // for export macro
 
 #include <string> // for ivars
+#include <vector> // for errors
 
 class vtkDataSet;
 
@@ -52,7 +53,6 @@ class VTKLACUNAFILTERSRADIALBASIS_EXPORT vtkLacunaRBFInterpolator
 public:
   static vtkLacunaRBFInterpolator* New();
   vtkTypeMacro(vtkLacunaRBFInterpolator, vtkImageAlgorithm);
-  void PrintSelf(ostream& os, vtkIndent indent) override;
 
   enum KernelType
   {
@@ -154,14 +154,14 @@ protected:
   int FillInputPortInformation(int port, vtkInformation* info) override;
   void Announce(const lacuna::Ports& ports) override;
   void Make(const lacuna::Ports& ports, lacuna::AlgorithmExecution& execution) override;
-  std::string Parameters(int port) const override;
+  void Describe(lacuna::Properties& properties) const override;
 
 private:
   vtkLacunaRBFInterpolator(const vtkLacunaRBFInterpolator&) = delete;
   void operator=(const vtkLacunaRBFInterpolator&) = delete;
 
-  void CheckProperties() const;
-  lacuna::RadialBasisOptions GetOptions(vtkDataSet* points) const;
+  lacuna::RadialBasisOptions GetOptions() const;
+  std::vector<double> GetErrors(vtkDataSet* points) const;
 
   std::string ScalarArray;
   std::string ErrorArray;

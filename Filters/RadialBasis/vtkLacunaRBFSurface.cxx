@@ -7,7 +7,6 @@
 #include "lacunaFieldData.h"
 #include "lacunaMemory.h"
 #include "lacunaOutlines.h"
-#include "lacunaParameterText.h"
 #include "lacunaPointNormals.h"
 #include "lacunaSurfaceFollower.h"
 #include "lacunaSurfacePoints.h"
@@ -42,6 +41,8 @@ vtkStandardNewMacro(vtkLacunaRBFSurface);
 namespace
 {
 using lacuna::Vec3;
+
+constexpr std::array<const char*, 2> KernelNames{ "Biharmonic", "Triharmonic" };
 
 // Normals from neighbours share their errors with these, so that held-out ones are predicted too well:
 // they are to say the side mostly.
@@ -320,7 +321,6 @@ void vtkLacunaRBFSurface::Make(const lacuna::Ports& ports, lacuna::AlgorithmExec
 {
   auto* distances = ports.GetOutput<vtkImageData>(1);
   distances->GetFieldData()->Initialize(); // VTK passes that of the input, which may be turned
-  this->CheckProperties();
   const auto start = std::chrono::steady_clock::now();
   execution.SetStage(0, 0.05);
   lacuna::SurfacePoints collected = this->CollectPoints(ports, execution);
@@ -383,34 +383,6 @@ void vtkLacunaRBFSurface::Make(const lacuna::Ports& ports, lacuna::AlgorithmExec
   {
     execution.SetStage(0.95, 1);
     this->SetDistances(execution, followed.Surface, distances);
-  }
-}
-
-//------------------------------------------------------------------------------
-void vtkLacunaRBFSurface::CheckProperties() const
-{
-  if (this->Kernel != Biharmonic && this->Kernel != Triharmonic)
-  {
-    throw std::runtime_error("Kernel is " + std::to_string(this->Kernel) +
-      "; it must be 0 (Biharmonic) or 1 (Triharmonic)");
-  }
-  for (const auto& property : { std::pair<const char*, double>{ "Accuracy", this->Accuracy },
-         { "Tolerance", this->Tolerance } })
-  {
-    if (!(property.second > 0) || !std::isfinite(property.second))
-    {
-      throw std::runtime_error(
-        std::string(property.first) + " must be a finite number above 0, in mm");
-    }
-  }
-  for (const auto& property : { std::pair<const char*, double>{ "Smoothing", this->Smoothing },
-         { "OutputSpacing", this->OutputSpacing }, { "DistanceSpacing", this->DistanceSpacing } })
-  {
-    if (!(property.second >= 0) || !std::isfinite(property.second))
-    {
-      throw std::runtime_error(
-        std::string(property.first) + " must be a finite number >= 0, in mm");
-    }
   }
 }
 
@@ -506,32 +478,25 @@ lacuna::SurfaceFollowerOptions vtkLacunaRBFSurface::GetFollowerOptions(
 }
 
 //------------------------------------------------------------------------------
-std::string vtkLacunaRBFSurface::Parameters(int) const
+void vtkLacunaRBFSurface::Describe(lacuna::Properties& properties) const
 {
-  return lacuna::ParameterText()
-    .Add("Kernel", this->Kernel)
-    .Add("Smoothing", this->Smoothing)
-    .Add("Accuracy", this->Accuracy)
-    .Add("Tolerance", this->Tolerance)
+  constexpr lacuna::ValueRange size = lacuna::ValueRange::Above(0, "mm");
+  properties.Add("Kernel", this->Kernel, KernelNames)
+    .Add("Smoothing", this->Smoothing, size.OrZero("estimated"))
+    .Add("Accuracy", this->Accuracy, size)
+    .Add("Tolerance", this->Tolerance, size)
     .Add("ErrorArray", this->ErrorArray)
-    .Add("OutputSpacing", this->OutputSpacing)
-    .Add("OutputBounds", this->OutputBounds)
+    .Add("OutputSpacing", this->OutputSpacing, size.OrZero("automatic"))
+    .Add("OutputBounds", this->OutputBounds, lacuna::ValueRange::Any("mm"))
     .Add("CapBoundary", this->CapBoundary)
     .Add("SideArray", this->SideArray)
     .Add("PriorFunction", this->PriorFunction ? this->PriorFunction->GetClassName() : "None")
-    .Add("DistanceSpacing", this->DistanceSpacing)
-    .Get();
+    .Add("DistanceSpacing", this->DistanceSpacing, size.OrZero("no image"));
 }
 
 //------------------------------------------------------------------------------
 void vtkLacunaRBFSurface::CheckDistanceGrid(const std::array<double, 6>& own)
 {
-  if (std::any_of(std::begin(this->OutputBounds), std::end(this->OutputBounds),
-        [](double b) { return !std::isfinite(b); }))
-  {
-    throw std::runtime_error("OutputBounds has a number that is not finite; an axis with minimum "
-                             "above maximum is not given");
-  }
   if (!(this->DistanceSpacing > 0))
   {
     return;
@@ -698,25 +663,4 @@ bool vtkLacunaRBFSurface::CheckSurface(
                     << " mm from it, more than Tolerance; choose a smaller OutputSpacing");
   }
   return topology.IsClosed();
-}
-
-//------------------------------------------------------------------------------
-void vtkLacunaRBFSurface::PrintSelf(ostream& os, vtkIndent indent)
-{
-  this->Superclass::PrintSelf(os, indent);
-  os << indent << "Kernel: " << this->Kernel << "\n";
-  os << indent << "Smoothing: " << this->Smoothing << "\n";
-  os << indent << "Accuracy: " << this->Accuracy << "\n";
-  os << indent << "Tolerance: " << this->Tolerance << "\n";
-  os << indent << "ErrorArray: " << this->ErrorArray << "\n";
-  os << indent << "SideArray: " << this->SideArray << "\n";
-  os << indent << "PriorFunction: " << this->PriorFunction.Get() << "\n";
-  os << indent << "DistanceSpacing: " << this->DistanceSpacing << "\n";
-  os << indent << "OutputSpacing: " << this->OutputSpacing << "\n";
-  os << indent << "OutputBounds:";
-  for (const double b : this->OutputBounds)
-  {
-    os << " " << b;
-  }
-  os << "\n" << indent << "CapBoundary: " << this->CapBoundary << "\n";
 }

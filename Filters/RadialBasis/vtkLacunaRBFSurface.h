@@ -81,7 +81,6 @@ class VTKLACUNAFILTERSRADIALBASIS_EXPORT vtkLacunaRBFSurface
 public:
   static vtkLacunaRBFSurface* New();
   vtkTypeMacro(vtkLacunaRBFSurface, vtkPolyDataAlgorithm);
-  void PrintSelf(ostream& os, vtkIndent indent) override;
 
   enum KernelType
   {
@@ -188,14 +187,13 @@ protected:
   int FillOutputPortInformation(int port, vtkInformation* info) override;
   void Announce(const lacuna::Ports& ports) override;
   void Make(const lacuna::Ports& ports, lacuna::AlgorithmExecution& execution) override;
-  std::string Parameters(int port) const override;
+  void Describe(lacuna::Properties& properties) const override;
 
 private:
   vtkLacunaRBFSurface(const vtkLacunaRBFSurface&) = delete;
   void operator=(const vtkLacunaRBFSurface&) = delete;
 
   bool HasOutputBounds() const;
-  void CheckProperties() const;
   void CheckDistanceGrid(const std::array<double, 6>& own); ///< own: bounds of the points
   void CheckNormals(
     lacuna::Execution& execution, const lacuna::OrientedPoints& points, double spacing);

@@ -3,7 +3,6 @@
 
 #include "lacunaIsoRayCaster.h"
 #include "lacunaMemory.h"
-#include "lacunaParameterText.h"
 
 #include "lacunaCasterView.h"
 #include "lacunaCutAway.h"
@@ -36,6 +35,7 @@
 namespace
 {
 constexpr const char* ThicknessName = "Thickness";
+constexpr std::array<const char*, 2> ProjectionNames{ "Parallel", "Perspective" };
 
 using SDDP = vtkStreamingDemandDrivenPipeline;
 using View = lacuna::CasterView;
@@ -96,14 +96,6 @@ public:
     if (self->IsoValues.empty())
     {
       throw std::runtime_error("no iso-value is given: add one to IsoValues");
-    }
-    for (const double isoValue : self->IsoValues)
-    {
-      if (!std::isfinite(isoValue))
-      {
-        throw std::runtime_error("IsoValues is " + lacuna::FormatValue(self->IsoValues) +
-          "; give grey levels that are finite numbers");
-      }
     }
   }
 
@@ -244,14 +236,14 @@ public:
     }
   }
 
-  /// The parameters that the map says of itself.
-  static std::string Describe(vtkLacunaBSplineIsoRayCaster* self, const Casting& casting)
+  /// What is recorded of the map: the view is the one that was found.
+  static std::string GetMade(vtkLacunaBSplineIsoRayCaster* self, const Casting& casting)
   {
-    lacuna::ParameterText parameters;
+    lacuna::Properties parameters;
     parameters.Add("Array", casting.ArrayName)
       .Add("IsoValues", self->IsoValues)
-      .Add("Interpolation", self->Interpolation)
-      .Add("SolidSide", self->SolidSide)
+      .Add("Interpolation", self->Interpolation, lacuna::FieldInterpolationNames)
+      .Add("SolidSide", self->SolidSide, lacuna::SolidSideNames)
       .Add("ViewDirection", self->ViewDirection)
       .Add("ViewUp", self->ViewUp)
       .Add("PlaneOrigin", casting.Plane.Origin.Elements)
@@ -261,12 +253,12 @@ public:
     {
       parameters.Add("EyePosition", casting.Request.Eye->Elements);
     }
-    parameters.Add("NormalMethod", self->NormalMethod)
+    parameters.Add("NormalMethod", self->NormalMethod, lacuna::SurfaceNormalNames)
       .Add("CutAway", lacuna::FunctionText::Describe(self->CutAway))
       .Add("CapCutAway", self->CapCutAway)
       .Add("CapBoundary", self->CapBoundary)
       .Add("ComputeThickness", self->ComputeThickness);
-    return parameters.Get();
+    return parameters.GetText();
   }
 };
 
@@ -383,6 +375,7 @@ void vtkLacunaBSplineIsoRayCaster::Announce(const lacuna::Ports& ports)
     info->Set(SDDP::WHOLE_EXTENT(), none, 6);
     return;
   }
+  this->CheckProperties();
   lacuna::DepthMap::SetInformation(info, Internals::MakePlane(this, input));
 }
 
@@ -418,8 +411,7 @@ void vtkLacunaBSplineIsoRayCaster::Make(
   request.Eye = this->Projection == Perspective ? &eye : nullptr;
   request.CapCutAway = this->CapCutAway;
   request.CapBoundary = this->CapBoundary;
-  request.Normals = this->NormalMethod == Analytic ? lacuna::SurfaceNormal::Analytic
-                                                   : lacuna::SurfaceNormal::GreyLevel;
+  request.Normals = static_cast<lacuna::SurfaceNormal>(this->NormalMethod);
   auto* start = ports.GetInput<vtkImageData>(1);
   Internals::RequireMemory(this, output, start != nullptr);
   std::vector<double> startDepths;
@@ -452,7 +444,7 @@ void vtkLacunaBSplineIsoRayCaster::Make(
     lacuna::FieldData::Set(
       output, lacuna::DepthMap::ViewAngleName, { lacuna::ViewAngleOf(plane, eye) }, 1);
   }
-  this->Internal->Made = Internals::Describe(this, casting);
+  this->Internal->Made = Internals::GetMade(this, casting);
 }
 
 //------------------------------------------------------------------------------
@@ -462,25 +454,25 @@ std::string vtkLacunaBSplineIsoRayCaster::Parameters(int) const
 }
 
 //------------------------------------------------------------------------------
-void vtkLacunaBSplineIsoRayCaster::PrintSelf(ostream& os, vtkIndent indent)
+void vtkLacunaBSplineIsoRayCaster::Describe(lacuna::Properties& properties) const
 {
-  this->Superclass::PrintSelf(os, indent);
-  os << indent << "ScalarArray: " << this->ScalarArray << "\n"
-     << indent << "IsoValues: " << lacuna::FormatValue(this->IsoValues) << "\n"
-     << indent << "Interpolation: " << this->Interpolation << "\n"
-     << indent << "SolidSide: " << this->SolidSide << "\n"
-     << indent << "ViewDirection: " << lacuna::FormatValue(this->ViewDirection) << "\n"
-     << indent << "ViewUp: " << lacuna::FormatValue(this->ViewUp) << "\n"
-     << indent << "FocalPoint: " << lacuna::FormatValue(this->FocalPoint) << "\n"
-     << indent << "PlaneOrigin: " << lacuna::FormatValue(this->PlaneOrigin) << "\n"
-     << indent << "PixelSpacing: " << this->PixelSpacing << "\n"
-     << indent << "Projection: " << this->Projection << "\n"
-     << indent << "EyePosition: " << lacuna::FormatValue(this->EyePosition) << "\n"
-     << indent << "ViewAngle: " << this->ViewAngle << "\n"
-     << indent << "NormalMethod: " << this->NormalMethod << "\n"
-     << indent << "CutAway: " << this->CutAway.Get() << "\n"
-     << indent << "CapCutAway: " << this->CapCutAway << "\n"
-     << indent << "CapBoundary: " << this->CapBoundary << "\n"
-     << indent << "ComputeThickness: " << this->ComputeThickness << "\n"
-     << indent << "ImageSize: " << this->ImageSize[0] << " " << this->ImageSize[1] << "\n";
+  using Range = lacuna::ValueRange;
+  properties.Add("ScalarArray", this->ScalarArray)
+    .Add("IsoValues", this->IsoValues, Range::Any("grey level"))
+    .Add("Interpolation", this->Interpolation, lacuna::FieldInterpolationNames)
+    .Add("SolidSide", this->SolidSide, lacuna::SolidSideNames)
+    .Add("ViewDirection", this->ViewDirection, Range::Any())
+    .Add("ViewUp", this->ViewUp, Range::Any())
+    .Add("FocalPoint", this->FocalPoint, Range::Any("mm"))
+    .Add("PlaneOrigin", this->PlaneOrigin, Range::Any("mm"))
+    .Add("PixelSpacing", this->PixelSpacing, Range::Above(0, "mm").OrZero("smallest voxel edge"))
+    .Add("ImageSize", this->ImageSize, Range::AtLeast(1, "pixels").OrZero("whole volume"))
+    .Add("Projection", this->Projection, ProjectionNames)
+    .Add("EyePosition", this->EyePosition, Range::Any("mm"))
+    .Add("ViewAngle", this->ViewAngle, Range::Above(0, "degrees").UpTo(180))
+    .Add("NormalMethod", this->NormalMethod, lacuna::SurfaceNormalNames)
+    .Add("CutAway", lacuna::FunctionText::Describe(this->CutAway))
+    .Add("CapCutAway", this->CapCutAway)
+    .Add("CapBoundary", this->CapBoundary)
+    .Add("ComputeThickness", this->ComputeThickness);
 }

@@ -61,7 +61,6 @@ class VTKLACUNAFILTERSRAYCASTING_EXPORT vtkLacunaBSplineIsoRayCaster
 public:
   static vtkLacunaBSplineIsoRayCaster* New();
   vtkTypeMacro(vtkLacunaBSplineIsoRayCaster, vtkImageAlgorithm);
-  void PrintSelf(ostream& os, vtkIndent indent) override;
 
   enum InterpolationType
   {
@@ -116,11 +115,11 @@ public:
    * The field between the voxels, default BSpline; which side of the iso-value is solid, default
    * Above (Below for vessels filled with fluid); where normals come from, default Analytic.
    */
-  vtkSetClampMacro(Interpolation, int, BSpline, Trilinear);
+  vtkSetMacro(Interpolation, int);
   vtkGetMacro(Interpolation, int);
-  vtkSetClampMacro(SolidSide, int, Above, Below);
+  vtkSetMacro(SolidSide, int);
   vtkGetMacro(SolidSide, int);
-  vtkSetClampMacro(NormalMethod, int, Analytic, GreyLevel);
+  vtkSetMacro(NormalMethod, int);
   vtkGetMacro(NormalMethod, int);
   ///@}
 
@@ -132,7 +131,7 @@ public:
    * the eye. ViewAngle is the angle that the map's rows span, degrees, default 30; it gives the
    * pixel spacing for a number of rows, or the rows for a spacing; if both are given it follows.
    */
-  vtkSetClampMacro(Projection, int, Parallel, Perspective);
+  vtkSetMacro(Projection, int);
   vtkGetMacro(Projection, int);
   vtkSetVector3Macro(EyePosition, double);
   vtkGetVector3Macro(EyePosition, double);
@@ -218,6 +217,7 @@ protected:
   int FillInputPortInformation(int port, vtkInformation* info) override;
   void Announce(const lacuna::Ports& ports) override;
   void Make(const lacuna::Ports& ports, lacuna::AlgorithmExecution& execution) override;
+  void Describe(lacuna::Properties& properties) const override;
   std::string Parameters(int port) const override;
 
   std::string ScalarArray;

@@ -11,7 +11,6 @@
 #include "lacunaFieldData.h"
 #include "lacunaFunctionText.h"
 #include "lacunaMapDepths.h"
-#include "lacunaParameterText.h"
 #include "lacunaShadowCaster.h"
 #include "lacunaVolumeCaster.h"
 #include "vtkDataArray.h"
@@ -39,14 +38,8 @@ namespace
 {
 using SDDP = vtkStreamingDemandDrivenPipeline;
 
-void CheckChoice(const char* name, int value, int count)
-{
-  if (value < 0 || value >= count)
-  {
-    throw std::runtime_error(std::string(name) + " is " + std::to_string(value) +
-      "; it must lie within 0 and " + std::to_string(count - 1));
-  }
-}
+constexpr std::array<const char*, 4> NormalMethodNames{ "Stored", "CentralDifference", "Gordon",
+  "Predicate" };
 
 /// The sphere around the box of a volume's voxel centres.
 lacuna::Sphere CircumscribedSphere(vtkImageData* volume)
@@ -148,42 +141,17 @@ public:
     return shadows;
   }
 
-  static lacuna::ShadingSettings MakeSettings(vtkLacunaDepthMapShader* self)
+  static void CheckLights(vtkLacunaDepthMapShader* self)
   {
-    CheckChoice("NormalMethod", self->NormalMethod, Predicate + 1);
-    CheckChoice("Shading", self->Shading, DepthOnly + 1);
-    CheckChoice("DepthLaw", self->DepthLaw, Inverse + 1);
-    CheckChoice("Interpolation", self->Interpolation, Trilinear + 1);
-    CheckChoice("SolidSide", self->SolidSide, Below + 1);
-    if (!(self->ShadowBias >= 0 && std::isfinite(self->ShadowBias)))
-    {
-      throw std::runtime_error("ShadowBias is " + std::to_string(self->ShadowBias) +
-        "; it must be a length in mm, or 0 for a tenth of the smallest voxel edge");
-    }
-    lacuna::ShadingSettings settings;
-    settings.Model =
-      self->Shading == Phong ? lacuna::ShadingModel::Phong : lacuna::ShadingModel::DepthOnly;
-    settings.Ambient = self->Ambient;
-    settings.Diffuse = self->Diffuse;
-    settings.Specular = self->Specular;
-    settings.SpecularPower = self->SpecularPower;
-    settings.DepthCue = self->DepthCue;
-    settings.Law =
-      self->DepthLaw == InverseSquare ? lacuna::DepthLaw::InverseSquare : lacuna::DepthLaw::Inverse;
-    std::copy_n(self->SurfaceColor, 3, settings.SurfaceColor.data());
-    std::copy_n(self->BackgroundColor, 3, settings.BackgroundColor.data());
     for (std::size_t i = 0; i < self->Lights.size(); ++i)
     {
-      const auto& light = self->Lights[i];
-      if (light[3] != 0 && light[3] != 1)
+      const double kind = self->Lights[i][3];
+      if (kind != 0 && kind != 1)
       {
         throw std::runtime_error("light " + std::to_string(i) + " has the fourth number " +
-          std::to_string(light[3]) + "; it must be 0 for a direction or 1 for a position");
+          std::to_string(kind) + "; it must be 0 for a direction or 1 for a position");
       }
-      settings.Lights.push_back({ { light[0], light[1], light[2] }, light[3] == 1, light[4] });
     }
-    settings.Check();
-    return settings;
   }
 
   /// The map's normals of the pixels of output; null when it has none.
@@ -248,39 +216,6 @@ public:
       output->GetPointData()->AddArray(difference);
     }
     return normals;
-  }
-
-  static std::string Describe(const vtkLacunaDepthMapShader* self)
-  {
-    std::vector<double> lights;
-    for (const auto& light : self->Lights)
-    {
-      lights.insert(lights.end(), light.begin(), light.end());
-    }
-    return lacuna::ParameterText()
-      .Add("DepthArray", self->DepthArray)
-      .Add("NormalMethod", self->NormalMethod)
-      .Add("MaximumAngle", self->MaximumAngle)
-      .Add("MaximumAngleChange", self->MaximumAngleChange)
-      .Add("Shading", self->Shading)
-      .Add("Ambient", self->Ambient)
-      .Add("Diffuse", self->Diffuse)
-      .Add("Specular", self->Specular)
-      .Add("SpecularPower", self->SpecularPower)
-      .Add("DepthCue", self->DepthCue)
-      .Add("DepthLaw", self->DepthLaw)
-      .Add("Lights", lights)
-      .Add("SurfaceColor", self->SurfaceColor)
-      .Add("BackgroundColor", self->BackgroundColor)
-      .Add("CastShadows", self->CastShadows)
-      .Add("VolumeArray", self->VolumeArray)
-      .Add("Interpolation", self->Interpolation)
-      .Add("SolidSide", self->SolidSide)
-      .Add("ShadowBias", self->ShadowBias)
-      .Add("CutAway", lacuna::FunctionText::Describe(self->GetCutAway()))
-      .Add("CapCutAway", self->CapCutAway)
-      .Add("CapBoundary", self->CapBoundary)
-      .Get();
   }
 
 private:
@@ -394,7 +329,9 @@ void vtkLacunaDepthMapShader::Make(
   auto* input = ports.GetInput<vtkImageData>();
   auto* volume = ports.GetInput<vtkImageData>(1);
   auto* output = ports.GetOutput<vtkImageData>();
-  lacuna::ShadingSettings settings = Internals::MakeSettings(this);
+  Internals::CheckLights(this);
+  lacuna::ShadingSettings settings = this->GetOptions();
+  settings.Check();
   const lacuna::DepthMap contract(input);
   const lacuna::MapDepths depths(input, contract, this->DepthArray);
   const lacuna::DepthGrid& grid = depths.GetGrid();
@@ -443,14 +380,39 @@ void vtkLacunaDepthMapShader::Make(
 }
 
 //------------------------------------------------------------------------------
-std::string vtkLacunaDepthMapShader::Parameters(int) const
+lacuna::ShadingSettings vtkLacunaDepthMapShader::GetOptions() const
 {
-  return Internals::Describe(this);
+  lacuna::ShadingSettings settings;
+  settings.Model = static_cast<lacuna::ShadingModel>(this->Shading);
+  settings.Ambient = this->Ambient;
+  settings.Diffuse = this->Diffuse;
+  settings.Specular = this->Specular;
+  settings.SpecularPower = this->SpecularPower;
+  settings.DepthCue = this->DepthCue;
+  settings.Law = static_cast<lacuna::DepthLaw>(this->DepthLaw);
+  std::copy_n(this->SurfaceColor, 3, settings.SurfaceColor.data());
+  std::copy_n(this->BackgroundColor, 3, settings.BackgroundColor.data());
+  for (const auto& light : this->Lights)
+  {
+    settings.Lights.push_back({ { light[0], light[1], light[2] }, light[3] == 1, light[4] });
+  }
+  return settings;
 }
 
 //------------------------------------------------------------------------------
-void vtkLacunaDepthMapShader::PrintSelf(ostream& os, vtkIndent indent)
+void vtkLacunaDepthMapShader::Describe(lacuna::Properties& properties) const
 {
-  this->Superclass::PrintSelf(os, indent);
-  os << indent << "Settings: " << Internals::Describe(this) << "\n";
+  properties.Add("DepthArray", this->DepthArray)
+    .Add("NormalMethod", this->NormalMethod, NormalMethodNames);
+  lacuna::DiscontinuityLimits{ this->MaximumAngle, this->MaximumAngleChange }.Describe(properties);
+  this->GetOptions().Describe(properties);
+  properties.Add("CastShadows", this->CastShadows)
+    .Add("VolumeArray", this->VolumeArray)
+    .Add("Interpolation", this->Interpolation, lacuna::FieldInterpolationNames)
+    .Add("SolidSide", this->SolidSide, lacuna::SolidSideNames)
+    .Add("ShadowBias", this->ShadowBias,
+      lacuna::ValueRange::Above(0, "mm").OrZero("a tenth of a voxel"))
+    .Add("CutAway", lacuna::FunctionText::Describe(this->GetCutAway()))
+    .Add("CapCutAway", this->CapCutAway)
+    .Add("CapBoundary", this->CapBoundary);
 }

@@ -51,13 +51,17 @@
 
 class vtkImplicitFunction;
 
+namespace lacuna
+{
+struct ShadingSettings;
+}
+
 class VTKLACUNAFILTERSRAYCASTING_EXPORT vtkLacunaDepthMapShader
   : public vtkLacunaAlgorithmOf(vtkImageAlgorithm)
 {
 public:
   static vtkLacunaDepthMapShader* New();
   vtkTypeMacro(vtkLacunaDepthMapShader, vtkImageAlgorithm);
-  void PrintSelf(ostream& os, vtkIndent indent) override;
 
   enum NormalMethodType
   {
@@ -206,7 +210,7 @@ protected:
   void Announce(const lacuna::Ports& ports) override;
   void Ask(const lacuna::Ports& ports) override;
   void Make(const lacuna::Ports& ports, lacuna::AlgorithmExecution& execution) override;
-  std::string Parameters(int port) const override;
+  void Describe(lacuna::Properties& properties) const override;
 
   std::string DepthArray = "Depth";
   int NormalMethod = Stored;
@@ -235,6 +239,7 @@ private:
   void operator=(const vtkLacunaDepthMapShader&) = delete;
 
   bool NeedsWholeMap();
+  lacuna::ShadingSettings GetOptions() const;
 
   class Internals;
   std::unique_ptr<Internals> Internal;

@@ -8,7 +8,6 @@
 #include "lacunaDepthMap.h"
 #include "lacunaMapDepths.h"
 #include "lacunaMemory.h"
-#include "lacunaParameterText.h"
 #include "vtkDoubleArray.h"
 #include "vtkFloatArray.h"
 #include "vtkIdList.h"
@@ -213,24 +212,10 @@ void vtkLacunaDepthMapSurface::Make(
 }
 
 //------------------------------------------------------------------------------
-std::string vtkLacunaDepthMapSurface::Parameters(int) const
+void vtkLacunaDepthMapSurface::Describe(lacuna::Properties& properties) const
 {
-  return lacuna::ParameterText()
-    .Add("DepthArray", this->DepthArray)
-    .Add("BreakAtDiscontinuities", this->BreakAtDiscontinuities)
-    .Add("MaximumAngle", this->MaximumAngle)
-    .Add("MaximumAngleChange", this->MaximumAngleChange)
-    .Add("ComputeNormalDifference", this->ComputeNormalDifference)
-    .Get();
-}
-
-//------------------------------------------------------------------------------
-void vtkLacunaDepthMapSurface::PrintSelf(ostream& os, vtkIndent indent)
-{
-  this->Superclass::PrintSelf(os, indent);
-  os << indent << "DepthArray: " << this->DepthArray << "\n"
-     << indent << "BreakAtDiscontinuities: " << this->BreakAtDiscontinuities << "\n"
-     << indent << "MaximumAngle: " << this->MaximumAngle << "\n"
-     << indent << "MaximumAngleChange: " << this->MaximumAngleChange << "\n"
-     << indent << "ComputeNormalDifference: " << this->ComputeNormalDifference << "\n";
+  properties.Add("DepthArray", this->DepthArray)
+    .Add("BreakAtDiscontinuities", this->BreakAtDiscontinuities);
+  lacuna::DiscontinuityLimits{ this->MaximumAngle, this->MaximumAngleChange }.Describe(properties);
+  properties.Add("ComputeNormalDifference", this->ComputeNormalDifference);
 }

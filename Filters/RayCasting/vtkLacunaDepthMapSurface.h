@@ -45,7 +45,6 @@ class VTKLACUNAFILTERSRAYCASTING_EXPORT vtkLacunaDepthMapSurface
 public:
   static vtkLacunaDepthMapSurface* New();
   vtkTypeMacro(vtkLacunaDepthMapSurface, vtkPolyDataAlgorithm);
-  void PrintSelf(ostream& os, vtkIndent indent) override;
 
   ///@{
   /** The point array with the depths in mm. Default Depth; Fitted shows the fit of a filled map. */
@@ -87,7 +86,7 @@ protected:
   void Announce(const lacuna::Ports& ports) override;
   void Ask(const lacuna::Ports& ports) override;
   void Make(const lacuna::Ports& ports, lacuna::AlgorithmExecution& execution) override;
-  std::string Parameters(int port) const override;
+  void Describe(lacuna::Properties& properties) const override;
 
   std::string DepthArray = "Depth";
   bool BreakAtDiscontinuities = true;

@@ -4,7 +4,6 @@
 #include "lacunaArrayScalarType.h"
 #include "lacunaContrast.h"
 #include "lacunaMemory.h"
-#include "lacunaParameterText.h"
 #include "lacunaSpeckleInput.h"
 #include "lacunaVolumeDirection.h"
 #include "vtkDoubleArray.h"
@@ -191,35 +190,12 @@ void vtkLacunaContrastToSpeckle::Make(
 }
 
 //------------------------------------------------------------------------------
-std::string vtkLacunaContrastToSpeckle::Parameters(int) const
+void vtkLacunaContrastToSpeckle::Describe(lacuna::Properties& properties) const
 {
-  lacuna::ParameterText text;
-  const auto region = [&](
-                        const std::string& name, const std::string& array, const double(&bounds)[6])
-  {
-    if (!array.empty())
-    {
-      text.Add(name + "Array", array);
-    }
-    if (HasBounds(bounds))
-    {
-      text.Add(name + "Bounds", bounds);
-    }
-  };
-  region("Inside", this->InsideArray, this->InsideBounds);
-  region("Outside", this->OutsideArray, this->OutsideBounds);
-  text.Add("IsoValue", this->IsoValue);
-  return text.Get();
-}
-
-//------------------------------------------------------------------------------
-void vtkLacunaContrastToSpeckle::PrintSelf(ostream& os, vtkIndent indent)
-{
-  this->Superclass::PrintSelf(os, indent);
-  os << indent << "ScalarArray: " << this->ScalarArray << "\n";
-  os << indent << "InsideArray: " << this->InsideArray << "\n";
-  os << indent << "OutsideArray: " << this->OutsideArray << "\n";
-  os << indent << "InsideBounds: " << lacuna::FormatValue(this->InsideBounds) << "\n";
-  os << indent << "OutsideBounds: " << lacuna::FormatValue(this->OutsideBounds) << "\n";
-  os << indent << "IsoValue: " << this->IsoValue << "\n";
+  properties.Add("ScalarArray", this->ScalarArray)
+    .Add("InsideArray", this->InsideArray)
+    .Add("InsideBounds", this->InsideBounds)
+    .Add("OutsideArray", this->OutsideArray)
+    .Add("OutsideBounds", this->OutsideBounds)
+    .Add("IsoValue", this->IsoValue, lacuna::ValueRange::Any("grey level"));
 }

@@ -42,7 +42,6 @@ class VTKLACUNAFILTERSSPECKLE_EXPORT vtkLacunaContrastToSpeckle
 public:
   static vtkLacunaContrastToSpeckle* New();
   vtkTypeMacro(vtkLacunaContrastToSpeckle, vtkTableAlgorithm);
-  void PrintSelf(ostream& os, vtkIndent indent) override;
 
   ///@{
   /// The point array of numbers; empty: the active scalars. Default: empty.
@@ -80,7 +79,7 @@ protected:
 
   int FillInputPortInformation(int port, vtkInformation* info) override;
   void Make(const lacuna::Ports& ports, lacuna::AlgorithmExecution& execution) override;
-  std::string Parameters(int port) const override;
+  void Describe(lacuna::Properties& properties) const override;
   void MakeNothing(const lacuna::Ports& ports) override;
 
 private:

@@ -4,7 +4,6 @@
 #include "lacunaArrayScalarType.h"
 #include "lacunaArrays.h"
 #include "lacunaMemory.h"
-#include "lacunaParameterText.h"
 #include "lacunaSpeckleFilter.h"
 #include "lacunaSpeckleInput.h"
 #include "lacunaTrackedSlices.h"
@@ -70,27 +69,6 @@ void CopyOthers(vtkImageData* input, vtkDataArray* chosen, vtkImageData* output)
 
 using Pipeline = vtkStreamingDemandDrivenPipeline;
 
-const char* const OperationNames[] = { "Median", "Rank", "Minimum", "Maximum", "Opening", "Closing",
-  "OpenClose", "CloseOpen", "Mode", "AdaptiveMedian", "Mean", "Gaussian", "LaplacianOfGaussian" };
-
-lacuna::SpeckleParameters MakeParameters(vtkLacunaSpeckleFilter* self, const double spacing[3])
-{
-  lacuna::SpeckleParameters parameters;
-  parameters.Operation = static_cast<lacuna::SpeckleOperation>(self->GetOperation());
-  parameters.Shape = self->GetKernelShape() == vtkLacunaSpeckleFilter::BOX
-    ? lacuna::WindowShape::Box
-    : lacuna::WindowShape::Ellipsoid;
-  parameters.Percentile = self->GetRank();
-  parameters.AdaptiveStrength = self->GetAdaptiveStrength();
-  parameters.StandardDeviation = self->GetStandardDeviation();
-  for (int a = 0; a < 3; ++a)
-  {
-    parameters.KernelSize[a] = self->GetKernelSize()[a];
-    parameters.Spacing[a] = std::abs(spacing[a]);
-  }
-  return parameters;
-}
-
 bool IsTrackedSlices(vtkDataObject* data)
 {
   return data->GetFieldData()->HasArray(lacuna::TrackedSlices::ImageToReferenceName) ||
@@ -145,7 +123,7 @@ void vtkLacunaSpeckleFilter::Announce(const lacuna::Ports& ports)
   vtkInformation* scalars = vtkDataObject::GetActiveFieldInformation(ports.GetInputInformation(),
     vtkDataObject::FIELD_ASSOCIATION_POINTS, vtkDataSetAttributes::SCALARS);
   const char* active = scalars ? scalars->Get(vtkDataObject::FIELD_NAME()) : nullptr;
-  if (this->Operation == LAPLACIAN_OF_GAUSSIAN &&
+  if (this->Operation == LaplacianOfGaussian &&
     (this->ScalarArray.empty() || (active && this->ScalarArray == active)))
   {
     const bool isDouble = scalars && scalars->Get(vtkDataObject::FIELD_ARRAY_TYPE()) == VTK_DOUBLE;
@@ -169,7 +147,7 @@ void vtkLacunaSpeckleFilter::Ask(const lacuna::Ports& ports)
     if (!lacuna::IsEmpty(needed))
     {
       needed = lacuna::Intersect(
-        lacuna::GetSpeckleInput(MakeParameters(this, spacing), needed), GetWhole(input));
+        lacuna::GetSpeckleInput(this->GetOptions(spacing), needed), GetWhole(input));
     }
   }
   catch (const std::invalid_argument&)
@@ -195,7 +173,7 @@ void vtkLacunaSpeckleFilter::Make(const lacuna::Ports& ports, lacuna::AlgorithmE
     return;
   }
   lacuna::VolumeDirection::Check(input);
-  const lacuna::SpeckleParameters parameters = MakeParameters(this, input->GetSpacing());
+  const lacuna::SpeckleParameters parameters = this->GetOptions(input->GetSpacing());
   vtkDataArray* chosen = lacuna::SpeckleInput::FindArray(input, this->ScalarArray);
   const lacuna::ScalarType scalarType = lacuna::ArrayScalarType::Get(chosen);
   const auto from = lacuna::SpeckleInput::MakeContiguous(chosen);
@@ -207,7 +185,7 @@ void vtkLacunaSpeckleFilter::Make(const lacuna::Ports& ports, lacuna::AlgorithmE
   }
 
   int type = from->GetDataType();
-  if (this->Operation == LAPLACIAN_OF_GAUSSIAN)
+  if (this->Operation == LaplacianOfGaussian)
   {
     type = type == VTK_DOUBLE ? VTK_DOUBLE : VTK_FLOAT;
   }
@@ -244,42 +222,26 @@ void vtkLacunaSpeckleFilter::Make(const lacuna::Ports& ports, lacuna::AlgorithmE
 }
 
 //------------------------------------------------------------------------------
-std::string vtkLacunaSpeckleFilter::Parameters(int) const
+lacuna::SpeckleParameters vtkLacunaSpeckleFilter::GetOptions(const double spacing[3]) const
 {
-  const int* size = this->KernelSize;
-  const int operation = this->Operation;
-  lacuna::ParameterText text;
-  text.Add("Operation", OperationNames[operation])
-    .Add("KernelSize", std::array<int, 3>{ size[0], size[1], size[2] });
-  if (operation < MEAN)
+  lacuna::SpeckleParameters parameters;
+  parameters.Operation = static_cast<lacuna::SpeckleOperation>(this->Operation);
+  parameters.Shape = static_cast<lacuna::WindowShape>(this->KernelShape);
+  parameters.Percentile = this->Rank;
+  parameters.AdaptiveStrength = this->AdaptiveStrength;
+  parameters.StandardDeviation = this->StandardDeviation;
+  for (int a = 0; a < 3; ++a)
   {
-    text.Add("KernelShape", this->KernelShape == BOX ? "Box" : "Ellipsoid");
+    parameters.KernelSize[a] = this->KernelSize[a];
+    parameters.Spacing[a] = std::abs(spacing[a]);
   }
-  if (operation == RANK)
-  {
-    text.Add("Rank", this->Rank);
-  }
-  if (operation == ADAPTIVE_MEDIAN)
-  {
-    text.Add("AdaptiveStrength", this->AdaptiveStrength);
-  }
-  if (operation > MEAN)
-  {
-    text.Add("StandardDeviation", this->StandardDeviation);
-  }
-  return text.Get();
+  return parameters;
 }
 
 //------------------------------------------------------------------------------
-void vtkLacunaSpeckleFilter::PrintSelf(ostream& os, vtkIndent indent)
+void vtkLacunaSpeckleFilter::Describe(lacuna::Properties& properties) const
 {
-  this->Superclass::PrintSelf(os, indent);
-  os << indent << "ScalarArray: " << this->ScalarArray << "\n";
-  os << indent << "Operation: " << OperationNames[this->Operation] << "\n";
-  os << indent << "KernelSize: " << this->KernelSize[0] << " " << this->KernelSize[1] << " "
-     << this->KernelSize[2] << "\n";
-  os << indent << "KernelShape: " << (this->KernelShape == BOX ? "Box" : "Ellipsoid") << "\n";
-  os << indent << "Rank: " << this->Rank << "\n";
-  os << indent << "AdaptiveStrength: " << this->AdaptiveStrength << "\n";
-  os << indent << "StandardDeviation: " << this->StandardDeviation << "\n";
+  const double anySpacing[3] = { 1, 1, 1 };
+  properties.Add("ScalarArray", this->ScalarArray);
+  this->GetOptions(anySpacing).Describe(properties);
 }

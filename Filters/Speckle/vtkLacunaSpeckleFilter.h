@@ -31,13 +31,17 @@
 
 #include <string> // for the array's name
 
+namespace lacuna
+{
+struct SpeckleParameters;
+}
+
 class VTKLACUNAFILTERSSPECKLE_EXPORT vtkLacunaSpeckleFilter
   : public vtkLacunaAlgorithmOf(vtkImageAlgorithm)
 {
 public:
   static vtkLacunaSpeckleFilter* New();
   vtkTypeMacro(vtkLacunaSpeckleFilter, vtkImageAlgorithm);
-  void PrintSelf(ostream& os, vtkIndent indent) override;
 
   ///@{
   /// The point array of numbers; empty: the active scalars. Default: empty.
@@ -47,59 +51,59 @@ public:
 
   enum OperationType
   {
-    MEDIAN,
-    RANK,
-    MINIMUM,
-    MAXIMUM,
-    OPENING,         ///< minimum, then maximum: removes bright details
-    CLOSING,         ///< maximum, then minimum: fills dark details
-    OPEN_CLOSE,      ///< opening, then closing
-    CLOSE_OPEN,      ///< closing, then opening
-    MODE,            ///< truncated median (Davies 1988; Evans & Nixon 1993)
-    ADAPTIVE_MEDIAN, ///< weighted median (Loupas 1989; Evans & Nixon 1993)
-    MEAN,
-    GAUSSIAN,
-    LAPLACIAN_OF_GAUSSIAN
+    Median,
+    AnyRank,
+    Minimum,
+    Maximum,
+    Opening,        ///< minimum, then maximum: removes bright details
+    Closing,        ///< maximum, then minimum: fills dark details
+    OpenClose,      ///< opening, then closing
+    CloseOpen,      ///< closing, then opening
+    Mode,           ///< truncated median (Davies 1988; Evans & Nixon 1993)
+    AdaptiveMedian, ///< weighted median (Loupas 1989; Evans & Nixon 1993)
+    Mean,
+    Gaussian,
+    LaplacianOfGaussian
   };
   ///@{
-  /// What to do. Default: MEDIAN.
-  vtkSetClampMacro(Operation, int, MEDIAN, LAPLACIAN_OF_GAUSSIAN);
+  /// What to do. Default: Median.
+  vtkSetMacro(Operation, int);
   vtkGetMacro(Operation, int);
   ///@}
 
   ///@{
-  /// Samples of the window along x, y, z, 1 to 255 each; at most 2^20 in all for ranks. GAUSSIAN
-  /// and LAPLACIAN_OF_GAUSSIAN work along the axes where this exceeds 1. Default: 5 5 1.
+  /// Samples of the window along x, y, z, 1 to 255 each; at most 2^20 in all for ranks. Gaussian
+  /// and LaplacianOfGaussian work along the axes where this exceeds 1. Default: 5 5 1.
   vtkSetVector3Macro(KernelSize, int);
   vtkGetVector3Macro(KernelSize, int);
   ///@}
 
   enum KernelShapeType
   {
-    BOX,
-    ELLIPSOID ///< with the kernel size as diameters: no blocks in large openings and closings
+    Box,
+    Ellipsoid ///< with the kernel size as diameters: no blocks in large openings and closings
   };
   ///@{
-  /// Shape of the window of ranks and morphology; MEAN always takes the box. Default: BOX.
-  vtkSetClampMacro(KernelShape, int, BOX, ELLIPSOID);
+  /// Shape of the window of ranks and morphology; Mean always takes the box. Default: Box.
+  vtkSetMacro(KernelShape, int);
   vtkGetMacro(KernelShape, int);
   ///@}
 
   ///@{
-  /// Percentile that RANK takes, 0 (the least) to 100 (the greatest). Default: 50, the median.
+  /// Percentile that AnyRank takes, 0 (the least) to 100 (the greatest). Default: 50, the median.
   vtkSetMacro(Rank, double);
   vtkGetMacro(Rank, double);
   ///@}
 
   ///@{
-  /// How fast the weights of ADAPTIVE_MEDIAN fall with distance (in samples) times variance / mean
+  /// How fast the weights of AdaptiveMedian fall with distance (in samples) times variance / mean
   /// of the window; 0 or more, 0 is the plain median. Default: 10, for grey levels 0 ... 255.
   vtkSetMacro(AdaptiveStrength, double);
   vtkGetMacro(AdaptiveStrength, double);
   ///@}
 
   ///@{
-  /// Of GAUSSIAN and LAPLACIAN_OF_GAUSSIAN, in mm (pixels in tracked slices), above 0.
+  /// Of Gaussian and LaplacianOfGaussian, in mm (pixels in tracked slices), above 0.
   /// Default: 1.4142135623730951, which smooths as much as a mean of 5 samples at spacing 1.
   vtkSetMacro(StandardDeviation, double);
   vtkGetMacro(StandardDeviation, double);
@@ -112,16 +116,18 @@ protected:
   void Announce(const lacuna::Ports& ports) override;
   void Ask(const lacuna::Ports& ports) override;
   void Make(const lacuna::Ports& ports, lacuna::AlgorithmExecution& execution) override;
-  std::string Parameters(int port) const override;
+  void Describe(lacuna::Properties& properties) const override;
 
 private:
   vtkLacunaSpeckleFilter(const vtkLacunaSpeckleFilter&) = delete;
   void operator=(const vtkLacunaSpeckleFilter&) = delete;
 
+  lacuna::SpeckleParameters GetOptions(const double spacing[3]) const;
+
   std::string ScalarArray;
-  int Operation = MEDIAN;
+  int Operation = Median;
   int KernelSize[3] = { 5, 5, 1 };
-  int KernelShape = BOX;
+  int KernelShape = Box;
   double Rank = 50;
   double AdaptiveStrength = 10;
   double StandardDeviation = 1.4142135623730951;

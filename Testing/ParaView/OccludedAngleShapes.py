@@ -51,7 +51,7 @@ for name, (data, most_volume, most_mean) in CASES.items():
     image.ShallowCopy(shape.GetOutput())
     image.SetSpacing(edge, edge, edge)
     angle.SetInputData(image)
-    angle.SetMode(angle.CONTINUOUS)
+    angle.SetMode(angle.Continuous)
     angle.KeepDataOn()
     angle.SetNumberOfDirections(200)
     schedule = occlusion.scaled(occlusion.DENSE if "dense" in name else occlusion.GROW_AND_SNAP, image)

@@ -159,8 +159,10 @@ def differs(range_, domain, label):
     high = next((float(range_[key]) for key in ("high", "high2", "high3") if range_[key]), None)
     if range_["zero"] and low is not None:
         low = min(low, 0)
-    shown = {end: float(domain.get(end)) for end in ("min", "max") if domain is not None and domain.get(end)}
-    unit = (range_["unit"] or range_["unit3"] or "").strip().replace("degrees", "°")
+    shown = {end: float(domain.get(end).split()[0]) for end in ("min", "max") if domain is not None and domain.get(end)}
+    unit = (range_["unit"] or range_["unit3"] or "").strip().replace("degrees", "°").replace("^2", "²")
+    if low is None and high is None and label is not None:
+        unit = label.get("unit", "")  # "a finite number" has none
     return (shown.get("min") != low or shown.get("max", high) is not None and (high is None or shown.get("max", high) > high)
             or label is not None and (label.get("unit", ""), label.get("zero")) != (unit, range_["zero"]))
 

@@ -236,7 +236,7 @@ def transparent(rank):
         opacity.AddPoint(*value)
     filter = occluded_angle(wavelet(20), False)
     filter.SetInputData(image)
-    filter.SetAttenuation(filter.OPACITY_FUNCTION)
+    filter.SetAttenuation(filter.ByOpacityFunction)
     filter.SetOpacityFunction(opacity)
     text = update(filter)
     assert "attenuates" in text, text
@@ -326,7 +326,7 @@ def saved(controller):
     pv.SaveData(file, proxy=smooth)
     before = written(file, controller)
     for proxy, name, bad, good, word in ((sweep, "NumberOfSlices", 0, 6, "NumberOfSlices is 0"),
-                                         (smooth, "KernelSize", [0, 3, 1], [3, 3, 1], "kernel size is 0")):
+                                         (smooth, "KernelSize", [0, 3, 1], [3, 3, 1], "KernelSize is 0 voxels")):
         setattr(proxy, name, bad)
         for said in word, "":  # then ParaView finds that the writer does not take empty data
             expect(said, lambda: pv.SaveData(file, proxy=smooth))
@@ -416,7 +416,7 @@ def of_first_rank():
             (pv.ContrastToSpeckle(Input=wavelet), None, "InsideBounds", [90, 91] * 3, [0, 4] * 3, "no sample is inside"),
             (of_grid, grid, "ScalarArray", "No", "Value", "'No'"),
             (of_smooth, smooth, "ScalarArray", "No", "RTData", "'No'"),
-            (of_smooth, smooth, "KernelSize", [0, 3, 1], [3, 3, 1], "kernel size is 0"),
+            (of_smooth, smooth, "KernelSize", [0, 3, 1], [3, 3, 1], "KernelSize is 0 voxels"),
             (of_gated, gated, "SpeedLimit", 0, 1000, "nothing to gate by")):
         print(proxy.GetXMLLabel(), flush=True)
         file = lacuna_test.output("RanksErrors.csv")

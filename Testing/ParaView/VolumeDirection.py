@@ -362,7 +362,7 @@ for direction in (np.eye(3), np.diag([-1, 1, 1]), np.diag([-1, -1, 1]), np.array
         image.SetDirectionMatrix(direction.astype(float).ravel())
         image.GetPointData().SetScalars(numpy_to_vtk(values.ravel(), deep=1))
         angle = lacuna.vtkLacunaOccludedAngle()
-        angle.SetMode(angle.BINARY)
+        angle.SetMode(angle.Binary)
         angle.SetNumberOfDirections(100)
         angle.SetThresholdsOverPi(0, 3.0 if values is letter else 1.5)
         angle.SetInputData(image)

@@ -240,7 +240,7 @@ void AddImageSubjects(std::vector<Subject>& subjects)
     Subject subject{ "SpeckleFilter", NewOf<T>,
       [](Dice& dice) -> Inputs { return { RandomVolume(dice) }; },
       { Word("ScalarArray", &T::SetScalarArray, { "" }),
-        Whole("Operation", &T::SetOperation, 0, T::LAPLACIAN_OF_GAUSSIAN),
+        Whole("Operation", &T::SetOperation, 0, T::LaplacianOfGaussian),
         Wholes<3>("KernelSize", &T::SetKernelSize, 1, 7),
         Whole("KernelShape", &T::SetKernelShape, 0, 1), Real("Rank", &T::SetRank, 0, 100),
         Real("AdaptiveStrength", &T::SetAdaptiveStrength, 0, 20),

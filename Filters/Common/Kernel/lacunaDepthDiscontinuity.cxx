@@ -2,30 +2,25 @@
 #include "lacunaDepthDiscontinuity.h"
 
 #include <cmath>
-#include <sstream>
-#include <stdexcept>
 
 namespace lacuna
 {
 namespace
 {
 constexpr double RadiansPerDegree = 3.14159265358979323846 / 180;
-
-void CheckAngle(const char* name, double degrees, double limit)
-{
-  if (!(degrees >= 0 && degrees <= limit))
-  {
-    std::ostringstream message;
-    message << name << " is " << degrees << " degrees; it must lie within 0 and " << limit;
-    throw std::invalid_argument(message.str());
-  }
 }
+
+void DiscontinuityLimits::Describe(Properties& properties) const
+{
+  properties.Add("MaximumAngle", this->MaximumAngle, ValueRange::Between(0, 90, "degrees"))
+    .Add("MaximumAngleChange", this->MaximumAngleChange, ValueRange::Between(0, 180, "degrees"));
 }
 
 void DiscontinuityLimits::Check() const
 {
-  CheckAngle("MaximumAngle", this->MaximumAngle, 90);
-  CheckAngle("MaximumAngleChange", this->MaximumAngleChange, 180);
+  Properties properties;
+  this->Describe(properties);
+  properties.Check();
 }
 
 SlopeRule::SlopeRule(const DiscontinuityLimits& limits)

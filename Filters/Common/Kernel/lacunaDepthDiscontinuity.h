@@ -6,6 +6,8 @@
 #ifndef lacunaDepthDiscontinuity_h
 #define lacunaDepthDiscontinuity_h
 
+#include "lacunaProperties.h"
+
 #include <cmath>
 #include <limits>
 
@@ -13,8 +15,10 @@ namespace lacuna
 {
 struct DiscontinuityLimits
 {
-  double MaximumAngle = 65;       ///< degrees, 0..90
-  double MaximumAngleChange = 20; ///< degrees, 0..180
+  double MaximumAngle = 65;       ///< degrees
+  double MaximumAngleChange = 20; ///< degrees
+
+  void Describe(Properties& properties) const; ///< with the ranges
 
   /// Throws std::invalid_argument that names the angle that is out of range or not a number.
   void Check() const;

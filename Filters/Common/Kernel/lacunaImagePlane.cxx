@@ -2,6 +2,7 @@
 #include "lacunaImagePlane.h"
 
 #include "lacunaMemory.h"
+#include "lacunaProperties.h"
 
 #include <algorithm>
 #include <cmath>
@@ -84,19 +85,10 @@ void CheckView(const ViewSettings& view)
   {
     throw std::invalid_argument("the plane origin " + Text(view.PlaneOrigin) + " is not a point");
   }
-  if (!std::isfinite(view.PixelSpacing) || view.PixelSpacing < 0)
+  ValueRange::AtLeast(0, "mm").Check("PixelSpacing", view.PixelSpacing);
+  for (const int size : view.Size)
   {
-    std::ostringstream message;
-    message << "a pixel spacing of " << view.PixelSpacing
-            << " mm is not possible: give a positive number, or 0 to take it from the data";
-    throw std::invalid_argument(message.str());
-  }
-  if (view.Size[0] < 0 || view.Size[1] < 0)
-  {
-    std::ostringstream message;
-    message << "an image of " << view.Size[0] << " x " << view.Size[1]
-            << " pixels is not possible: give positive numbers, or 0 to fit the data";
-    throw std::invalid_argument(message.str());
+    ValueRange::AtLeast(0, "pixels").Check("ImageSize", size);
   }
 }
 }

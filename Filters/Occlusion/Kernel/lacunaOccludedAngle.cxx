@@ -317,11 +317,7 @@ void Check(const AttenuationField& field, const OccludedAngleOptions& options)
       " mm is smaller than a voxel; give at least " + std::to_string(field.GetShortestEdge()) +
       " mm, or 0 for the whole reconstruction space");
   }
-  if (!(options.Dilation >= 0 && options.Dilation <= 0.9))
-  {
-    throw std::invalid_argument("the dilation is " + std::to_string(options.Dilation) +
-      " voxels; it must be between 0 and 0.9");
-  }
+  DilationRange.Check("Dilation", options.Dilation);
 }
 }
 

@@ -6,6 +6,7 @@
 
 #include "lacunaAttenuationField.h"
 #include "lacunaExecution.h"
+#include "lacunaProperties.h"
 #include "lacunaRanks.h"
 #include "lacunaVector.h"
 
@@ -22,6 +23,9 @@ std::vector<Vec3> EqualAngleLines(int count);
 /// directions. Deterministic. (Carr 1996, section 5.8 uses random directions.)
 std::vector<Vec3> EqualAreaLines(int count);
 
+/// Above, voxels would close gaps that are as wide as they are.
+inline constexpr ValueRange DilationRange = ValueRange::Between(0, 0.9, "voxels");
+
 /// How rays see.
 struct OccludedAngleOptions
 {
@@ -31,8 +35,8 @@ struct OccludedAngleOptions
   int Directions = 1000;
   /// Rays end at this distance (mm); 0: at the end of the reconstruction space.
   double Radius = 0;
-  /// In Binary mode voxels hide as if they were larger by this, 0...0.9 voxels: then gaps of that
-  /// width between them are closed.
+  /// In Binary mode voxels hide as if they were larger by this, in voxels: then gaps of that width
+  /// between them are closed.
   double Dilation = 0;
   /// The part of the whole progress that this is.
   double FirstProgress = 0;

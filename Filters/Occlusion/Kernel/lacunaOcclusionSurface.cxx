@@ -392,6 +392,12 @@ private:
 }
 
 //------------------------------------------------------------------------------
+void OcclusionSurfaceOptions::Describe(Properties& properties) const
+{
+  properties.Add("Smoothing", this->Smoothing, ValueRange::Above(0))
+    .Add("Tolerance", this->Tolerance, ValueRange::Between(0.001, 0.5, "voxel edges"));
+}
+
 double OcclusionImages::GetEdge() const
 {
   return std::cbrt(this->Spacing[0] * this->Spacing[1] * this->Spacing[2]);
@@ -491,14 +497,9 @@ OcclusionSurface::OcclusionSurface(
   : Images(images)
   , Options(options)
 {
-  if (!(options.Smoothing > 0) || !std::isfinite(options.Smoothing))
-  {
-    throw std::invalid_argument("Smoothing must be a finite number above 0");
-  }
-  if (!(options.Tolerance >= 0.001 && options.Tolerance <= 0.5))
-  {
-    throw std::invalid_argument("Tolerance must be between 0.001 and 0.5 voxel edges");
-  }
+  Properties properties;
+  options.Describe(properties);
+  properties.Check();
   const Execution::NestedStages stages(execution);
   execution.SetStage(0, 0.1);
   OrientedData data = OrientData(images, execution);

@@ -5,6 +5,7 @@
 #define lacunaOcclusionSurface_h
 
 #include "lacunaExecution.h"
+#include "lacunaProperties.h"
 #include "lacunaRadialBasis.h"
 #include "lacunaVector.h"
 
@@ -58,8 +59,10 @@ constexpr std::size_t MinimumSurfacePoints = 10;
 
 struct OcclusionSurfaceOptions
 {
-  double Smoothing = 1;    ///< above 0, without unit; 1 suits voxels that the surface runs through
-  double Tolerance = 0.05; ///< how much the function may be wrong, in voxel edges, 0.001...0.5
+  double Smoothing = 1;    ///< without unit; 1 suits voxels that the surface runs through
+  double Tolerance = 0.05; ///< how much the function may be wrong, in voxel edges
+
+  void Describe(Properties& properties) const; ///< with the ranges
 };
 
 /// What a fit came to. Lengths in mm.

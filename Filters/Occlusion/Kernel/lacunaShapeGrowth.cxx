@@ -31,12 +31,10 @@ void Check(const AttenuationField& field, const GrowthOptions& options)
         (field.IsFlat() ? " rad (2 pi)" : " sr (4 pi)"));
     }
   }
-  if (!(options.ObjectOpacity > 0 && options.ObjectOpacity <= 1))
-  {
-    throw std::invalid_argument("ObjectOpacity is " + std::to_string(options.ObjectOpacity) +
-      "; it must be above 0 and at most 1");
-  }
-  if (options.MedianKernel < 1 || options.MedianKernel % 2 == 0)
+  Properties properties;
+  options.Describe(properties);
+  properties.Check();
+  if (options.MedianKernel % 2 == 0)
   {
     throw std::invalid_argument("MedianKernel is " + std::to_string(options.MedianKernel) +
       "; it must be odd (1: no filter)");
@@ -151,6 +149,14 @@ GrowthStatistics Threshold(AttenuationField& field, double threshold, const std:
 }
 
 //------------------------------------------------------------------------------
+void GrowthOptions::Describe(Properties& properties) const
+{
+  properties.Add("ObjectOpacity", this->ObjectOpacity, ValueRange::Above(0).UpTo(1))
+    .Add("Dilation", this->Dilation, DilationRange)
+    .Add("KeepData", this->KeepData)
+    .Add("MedianKernel", this->MedianKernel, ValueRange::Between(1, 255, "voxels"));
+}
+
 double GetLargestAttenuation(const AttenuationField& field)
 {
   return 12 / field.GetShortestEdge();

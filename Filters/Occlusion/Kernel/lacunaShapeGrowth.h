@@ -24,16 +24,19 @@ struct GrowthOptions
 {
   bool Binary = false;
   int Directions = 1000;
-  double Dilation = 0; ///< see OccludedAngleOptions
   /// The fraction of a ray that an object voxel of the second and later iterations takes over the
-  /// shortest voxel edge, above 0 and at most 1.
+  /// shortest voxel edge.
   double ObjectOpacity = 0.95;
+  double Dilation = 0; ///< see OccludedAngleOptions
   /// Whether voxels of the data that are at least half opaque (opacity 0.5 over the shortest voxel
   /// edge) are object in every iteration, whatever their angle.
   bool KeepData = false;
   /// Edge length in voxels of the median filter on the angle, odd; 1: none.
   int MedianKernel = 1;
   std::vector<GrowthStep> Steps;
+
+  /// From ObjectOpacity to MedianKernel, with the ranges.
+  void Describe(Properties& properties) const;
 };
 
 /// What an iteration came to.

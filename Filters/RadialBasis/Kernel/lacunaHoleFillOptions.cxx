@@ -5,7 +5,6 @@
 
 #include <cmath>
 #include <limits>
-#include <sstream>
 #include <stdexcept>
 
 namespace lacuna
@@ -14,28 +13,9 @@ namespace
 {
 void CheckOptions(const HoleFillOptions& options)
 {
-  const auto check = [](const char* name, double value, bool positive)
-  {
-    if (!std::isfinite(value) || value < 0 || (positive && value == 0))
-    {
-      std::ostringstream message;
-      message << name << " is " << value << "; it must be a finite number of mm "
-              << (positive ? "above 0" : ">= 0");
-      throw std::invalid_argument(message.str());
-    }
-  };
-  check("SupportMargin", options.SupportMargin, true);
-  check("SupportStepMargin", options.SupportStepMargin, false);
-  check("NodeSpacing", options.NodeSpacing, true);
-  check("OutputMargin", options.OutputMargin, false);
-  check("CutoffWavelength", options.CutoffWavelength, false);
-  check("KernelLength", options.KernelLength, false);
-  check("OutputSpacing", options.OutputSpacing[0], false);
-  check("OutputSpacing", options.OutputSpacing[1], false);
-  if (!std::isfinite(options.Smoothing) || options.Smoothing < 0)
-  {
-    throw std::invalid_argument("Smoothing must be a finite number >= 0");
-  }
+  Properties properties;
+  options.Describe(properties);
+  properties.Check();
   if (options.Smoothing > 0 && options.CutoffWavelength > 0)
   {
     throw std::invalid_argument("Smoothing and CutoffWavelength are both above 0, and each "
@@ -48,11 +28,9 @@ void CheckOptions(const HoleFillOptions& options)
                                 "ThinPlate, Linear, Cubic or Triharmonic; with Gaussian and "
                                 "Multiquadric set it to 0 and use Smoothing");
   }
-  if (!(options.Accuracy >= 0) || !(options.Accuracy < 1))
+  if (options.Accuracy == 1)
   {
-    std::ostringstream message;
-    message << "Accuracy is " << options.Accuracy << "; it must be a number from 0 to less than 1";
-    throw std::invalid_argument(message.str());
+    throw std::invalid_argument("Accuracy is 1; it must be less");
   }
   if (options.Solver == RadialSolver::Fast && options.Accuracy == 0)
   {
@@ -60,6 +38,24 @@ void CheckOptions(const HoleFillOptions& options)
                                 "for a fit exact up to round-off set Solver to Direct");
   }
 }
+}
+
+//------------------------------------------------------------------------------
+void HoleFillOptions::Describe(Properties& properties) const
+{
+  constexpr ValueRange size = ValueRange::Above(0, "mm");
+  properties.Add("Kernel", static_cast<int>(this->Kernel), RadialKernelNames)
+    .Add("KernelLength", this->KernelLength, size.OrZero("automatic"))
+    .Add("Trend", static_cast<int>(this->Trend), HoleTrendNames)
+    .Add("SupportMargin", this->SupportMargin, size)
+    .Add("SupportStepMargin", this->SupportStepMargin, size.OrZero("off"))
+    .Add("NodeSpacing", this->NodeSpacing, size)
+    .Add("Smoothing", this->Smoothing, ValueRange::Above(0, "mm^2").OrZero("through the nodes"))
+    .Add("CutoffWavelength", this->CutoffWavelength, size.OrZero("off"))
+    .Add("OutputMargin", this->OutputMargin, ValueRange::AtLeast(0, "mm"))
+    .Add("OutputSpacing", this->OutputSpacing, size.OrZero("of the map"))
+    .Add("Accuracy", this->Accuracy, ValueRange::Between(0, 1))
+    .Add("Solver", static_cast<int>(this->Solver), RadialSolverNames);
 }
 
 //------------------------------------------------------------------------------

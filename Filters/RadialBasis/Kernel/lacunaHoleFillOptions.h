@@ -5,9 +5,11 @@
 #define lacunaHoleFillOptions_h
 
 #include "lacunaHoleSupport.h"
+#include "lacunaProperties.h"
 #include "lacunaRadialBasis.h"
 #include "lacunaVector.h"
 
+#include <array>
 #include <cstdint>
 
 namespace lacuna
@@ -17,22 +19,25 @@ enum class HoleTrend
   None = 0,
   Ellipsoid = 1 ///< the fit is of the difference to the best EllipsoidTrend
 };
+inline constexpr std::array<const char*, 2> HoleTrendNames{ "None", "Ellipsoid" };
 
 struct HoleFillOptions
 {
   RadialKernel Kernel = RadialKernel::ThinPlate;
   double KernelLength = 0; ///< mm, see RadialBasisOptions::Shape
   HoleTrend Trend = HoleTrend::None;
-  double SupportMargin = 12;    ///< mm, > 0
-  double SupportStepMargin = 0; ///< mm, >= 0, see SupportMargins::Step
-  double NodeSpacing = 1;       ///< mm, > 0
+  double SupportMargin = 12;    ///< mm
+  double SupportStepMargin = 0; ///< mm, see SupportMargins::Step
+  double NodeSpacing = 1;       ///< mm
   double Smoothing = 0;         ///< see RadialBasisOptions
-  double CutoffWavelength = 0;  ///< mm, >= 0; above 0 it determines Smoothing, which must be 0
-  double OutputMargin = 0;      ///< mm, >= 0
-  Vec2 OutputSpacing{ 0, 0 };   ///< mm, >= 0; 0: that of the map
+  double CutoffWavelength = 0;  ///< mm; above 0 it determines Smoothing, which must be 0
+  double OutputMargin = 0;      ///< mm
+  Vec2 OutputSpacing{ 0, 0 };   ///< mm; 0: that of the map
   double Accuracy = 1e-4;       ///< see RadialBasisOptions
   RadialSolver Solver = RadialSolver::Auto;
   std::uint64_t MaximumBytes = RadialBasisOptions().MaximumBytes;
+
+  void Describe(Properties& properties) const; ///< with the ranges
 };
 
 /// In pixels: positions are products that round.

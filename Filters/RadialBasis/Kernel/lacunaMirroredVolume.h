@@ -21,6 +21,8 @@ enum class MirrorInterpolation
   Linear,
   Nearest ///< for labels
 };
+inline constexpr std::array<const char*, 3> MirrorInterpolationNames{ "BSpline", "Linear",
+  "Nearest" };
 
 /// First and last voxel along each axis; none where a first one is beyond its last one.
 using VolumePart = std::array<int, 6>;

@@ -275,17 +275,26 @@ template void CheckSpread<2>(const std::vector<std::array<double, 2>>&, const Ra
 template void CheckSpread<3>(const std::vector<std::array<double, 3>>&, const RadialPolynomial<3>&);
 
 //------------------------------------------------------------------------------
+void RadialBasisOptions::Describe(Properties& properties) const
+{
+  properties.Add("Kernel", static_cast<int>(this->Kernel), RadialKernelNames)
+    .Add("KernelLength", this->Shape, ValueRange::AtLeast(0))
+    .Add("Smoothing", this->Smoothing, ValueRange::AtLeast(0))
+    .Add("Accuracy", this->Accuracy, ValueRange::Between(0, 1))
+    .Add("Solver", static_cast<int>(this->Solver), RadialSolverNames);
+}
+
+//------------------------------------------------------------------------------
 namespace
 {
 void CheckOptions(const RadialBasisOptions& options)
 {
-  if (!(options.Smoothing >= 0) || !std::isfinite(options.Smoothing))
+  Properties properties;
+  options.Describe(properties);
+  properties.Check();
+  if (options.Accuracy == 1)
   {
-    throw std::invalid_argument("smoothing must be a finite number >= 0");
-  }
-  if (!(options.Accuracy >= 0) || !(options.Accuracy < 1))
-  {
-    throw std::invalid_argument("the accuracy must be a number from 0 to less than 1");
+    throw std::invalid_argument("Accuracy is 1; it must be less");
   }
   if (options.Solver == RadialSolver::Fast && options.Accuracy == 0)
   {

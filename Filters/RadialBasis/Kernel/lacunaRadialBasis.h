@@ -4,6 +4,7 @@
 #ifndef lacunaRadialBasis_h
 #define lacunaRadialBasis_h
 
+#include "lacunaProperties.h"
 #include "lacunaRadialControl.h"
 #include "lacunaRadialSum.h"
 #include "lacunaRadialSystem.h"
@@ -87,6 +88,7 @@ enum class RadialSolver
   Direct = 1, ///< by LAPACK
   Fast = 2    ///< by preconditioned iteration with fast sums
 };
+inline constexpr std::array<const char*, 3> RadialSolverNames{ "Auto", "Direct", "Fast" };
 
 struct RadialBasisOptions
 {
@@ -94,7 +96,7 @@ struct RadialBasisOptions
   static constexpr std::size_t AutoDirectNodes = 1500;
 
   RadialKernel Kernel = RadialKernel::ThinPlate;
-  /// mu >= 0: instead of interpolating, s minimises sum_i ((f_i - s(x_i)) / e_i)^2 + mu E(s). In
+  /// mu: above 0, instead of interpolating, s minimises sum_i ((f_i - s(x_i)) / e_i)^2 + mu E(s). In
   /// 2-D and for the thin plate E is the bending energy (no unit when values and nodes are in mm, so
   /// that mu is in mm^2); for the others see RadialBasisReport::Energy (mu in mm^Power).
   double Smoothing = 0;
@@ -113,6 +115,9 @@ struct RadialBasisOptions
   /// Keeps what control points need after the fit: the factorized matrix or the preconditioner.
   bool Controllable = false;
   RadialWords Words;
+
+  /// Kernel, KernelLength (Shape), Smoothing, Accuracy and Solver, with the ranges.
+  void Describe(Properties& properties) const;
 };
 
 /// What a fit found out about itself.

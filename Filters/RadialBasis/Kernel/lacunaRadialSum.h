@@ -30,6 +30,8 @@ enum class RadialKernel
   Gaussian = 4,    ///< exp(-r^2), r in units of its length
   Multiquadric = 5 ///< sqrt(1 + r^2), r in units of its length
 };
+inline constexpr std::array<const char*, 6> RadialKernelNames{ "ThinPlate", "Linear", "Triharmonic",
+  "Cubic", "Gaussian", "Multiquadric" };
 
 enum class InstructionSet
 {

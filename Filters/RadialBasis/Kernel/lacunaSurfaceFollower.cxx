@@ -3,6 +3,7 @@
 
 #include "lacunaExecution.h"
 #include "lacunaMemory.h"
+#include "lacunaProperties.h"
 
 #include <algorithm>
 #include <cmath>
@@ -536,10 +537,7 @@ FollowedSurface FollowSurface(Execution& execution, const ImplicitFunction& func
   {
     throw std::invalid_argument("the length of edges must be a finite number above 0");
   }
-  if (!(options.Tolerance > 0) || !std::isfinite(options.Tolerance))
-  {
-    throw std::invalid_argument("Tolerance must be a finite number above 0");
-  }
+  ValueRange::Above(0, "mm").Check("Tolerance", options.Tolerance);
   for (int c = 0; c < 3; ++c)
   {
     if (!(options.Bounds[2 * c] < options.Bounds[2 * c + 1]) ||

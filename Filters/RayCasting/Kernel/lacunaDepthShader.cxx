@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <sstream>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -14,16 +13,7 @@ namespace lacuna
 namespace
 {
 constexpr int RowGrain = 4;
-
-void CheckRange(const std::string& name, double value, double low, double high)
-{
-  if (!(value >= low && value <= high))
-  {
-    std::ostringstream message;
-    message << name << " is " << value << "; it must lie within " << low << " and " << high;
-    throw std::invalid_argument(message.str());
-  }
-}
+constexpr ValueRange Amount = ValueRange::Between(0, 1e6);
 
 /// What is not a number is black.
 unsigned char ToByte(double intensity)
@@ -145,33 +135,42 @@ double DepthIntensity(double u, DepthLaw law)
   return law == DepthLaw::InverseSquare ? (4 / (d * d) - 1) / 3 : 2 / d - 1;
 }
 
+void ShadingSettings::Describe(Properties& properties) const
+{
+  std::vector<double> lights;
+  for (const ShaderLight& light : this->Lights)
+  {
+    lights.insert(lights.end(), light.Place.Elements.begin(), light.Place.Elements.end());
+    lights.push_back(light.IsPosition ? 1 : 0);
+    lights.push_back(light.Intensity);
+  }
+  properties.Add("Shading", static_cast<int>(this->Model), ShadingModelNames)
+    .Add("Ambient", this->Ambient, Amount)
+    .Add("Diffuse", this->Diffuse, Amount)
+    .Add("Specular", this->Specular, Amount)
+    .Add("SpecularPower", this->SpecularPower, ValueRange::Between(1e-3, 1e6))
+    .Add("DepthCue", this->DepthCue, ValueRange::Between(0, 1))
+    .Add("DepthLaw", static_cast<int>(this->Law), DepthLawNames)
+    .Add("Lights", lights, ValueRange::Any())
+    .Add("SurfaceColor", this->SurfaceColor.Elements, ValueRange::Between(0, 1))
+    .Add("BackgroundColor", this->BackgroundColor.Elements, ValueRange::Between(0, 1));
+}
+
 void ShadingSettings::Check() const
 {
-  constexpr double many = 1e6;
-  CheckRange("Ambient", this->Ambient, 0, many);
-  CheckRange("Diffuse", this->Diffuse, 0, many);
-  CheckRange("Specular", this->Specular, 0, many);
-  CheckRange("SpecularPower", this->SpecularPower, 1e-3, many);
-  CheckRange("DepthCue", this->DepthCue, 0, 1);
-  for (int a = 0; a < 3; ++a)
-  {
-    CheckRange("SurfaceColor", this->SurfaceColor[a], 0, 1);
-    CheckRange("BackgroundColor", this->BackgroundColor[a], 0, 1);
-  }
+  Properties properties;
+  this->Describe(properties);
+  properties.Check();
   for (std::size_t i = 0; i < this->Lights.size(); ++i)
   {
     const ShaderLight& light = this->Lights[i];
     const std::string name = "light " + std::to_string(i);
-    if (!IsFinite(light.Place))
-    {
-      throw std::invalid_argument(name + " has a place that is not finite");
-    }
     if (!light.IsPosition && !HasDirection(light.Place))
     {
       throw std::invalid_argument(name +
         " has no direction (its vector is zero or too long); give the direction towards the light");
     }
-    CheckRange("the intensity of " + name, light.Intensity, 0, many);
+    Amount.Check(("the intensity of " + name).c_str(), light.Intensity);
   }
 }
 

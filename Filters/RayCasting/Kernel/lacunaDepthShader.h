@@ -6,6 +6,7 @@
 
 #include "lacunaDepthGrid.h"
 #include "lacunaExecution.h"
+#include "lacunaProperties.h"
 #include "lacunaShadowCaster.h"
 
 #include <array>
@@ -25,12 +26,14 @@ enum class ShadingModel
   Phong,    ///< depth cue x (ambient + diffuse N.L + specular cos^n), summed over the lights
   DepthOnly ///< DepthIntensity
 };
+inline constexpr std::array<const char*, 2> ShadingModelNames{ "Phong", "DepthOnly" };
 
 enum class DepthLaw
 {
   InverseSquare, ///< light of a point source
   Inverse        ///< between that and parallel light
 };
+inline constexpr std::array<const char*, 2> DepthLawNames{ "InverseSquare", "Inverse" };
 
 /// From 1 at the near end of the sphere around the data (u = 0) to 0 at its far end (u = 1); u is
 /// limited to 0..1. The source is one diameter before the sphere, that is at distances d = 1 + u, and
@@ -43,14 +46,15 @@ struct ShadingSettings
   double Ambient = 0.1;
   double Diffuse = 0.7;
   double Specular = 0.2;
-  double SpecularPower = 20;       ///< n, > 0
+  double SpecularPower = 20;       ///< n
   std::vector<ShaderLight> Lights; ///< none: one at the viewpoint, of intensity 1
-  double DepthCue = 0;             ///< 0..1: the far end of the sphere is 1 - DepthCue as bright
+  double DepthCue = 0;             ///< the far end of the sphere is 1 - DepthCue as bright
   DepthLaw Law = DepthLaw::InverseSquare;
   Sphere Data;                     ///< around the data; radius 0: nothing is near or far
-  Vec3 SurfaceColor{ 1, 1, 1 };    ///< 0..1, of ambient and diffuse light; highlights are white
-  Vec3 BackgroundColor{ 0, 0, 0 }; ///< 0..1, of pixels without a depth
+  Vec3 SurfaceColor{ 1, 1, 1 };    ///< of ambient and diffuse light; highlights are white
+  Vec3 BackgroundColor{ 0, 0, 0 }; ///< of pixels without a depth
 
+  void Describe(Properties& properties) const; ///< with the ranges, lights as five numbers each
   /// Throws std::invalid_argument that names the setting that is out of range or not a number.
   void Check() const;
 };

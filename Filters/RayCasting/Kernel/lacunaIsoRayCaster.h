@@ -15,6 +15,7 @@
 #include "lacunaSolidSide.h"
 #include "lacunaVoxelVolume.h"
 
+#include <array>
 #include <cstdint>
 #include <memory>
 
@@ -41,12 +42,15 @@ enum class FieldInterpolation
   InterpolatingBSpline, ///< cubic, goes through the voxels
   Trilinear
 };
+inline constexpr std::array<const char*, 3> FieldInterpolationNames{ "BSpline",
+  "InterpolatingBSpline", "Trilinear" };
 
 enum class SurfaceNormal
 {
   Analytic, ///< of the field
   GreyLevel ///< differences of voxels, interpolated trilinearly (Carr 1996, eq. 3.5)
 };
+inline constexpr std::array<const char*, 2> SurfaceNormalNames{ "Analytic", "GreyLevel" };
 
 struct RayHit
 {

@@ -21,6 +21,7 @@ namespace lacuna
 namespace
 {
 constexpr double CentralWeight = 99;
+constexpr ValueRange StrengthRange = ValueRange::AtLeast(0);
 
 /// The samples of a window: how far from its corner in a block of given size, how far from its
 /// centre.
@@ -196,11 +197,7 @@ template <class T>
 void FilterAdaptiveMedian(const ImageView<const T>& input, const ImageView<T>& output,
   const Window& window, double strength, Execution& execution)
 {
-  if (!(strength >= 0) || !std::isfinite(strength))
-  {
-    throw std::invalid_argument("the adaptive strength is " + std::to_string(strength) +
-      "; it must be a finite number, 0 or more");
-  }
+  StrengthRange.Check("AdaptiveStrength", strength);
   RequireRankable(window);
   FilterBlocks(output.Box, ChooseExhaustiveBlock(window, sizeof(T)), execution,
     [&] { return std::make_unique<BlockFilter<T>>(input, output, window, strength); });
@@ -451,13 +448,15 @@ Window WindowOf(const SpeckleParameters& parameters)
   return Window(parameters.KernelSize, box ? WindowShape::Box : parameters.Shape);
 }
 
+void CheckParameters(const SpeckleParameters& parameters)
+{
+  Properties properties;
+  parameters.Describe(properties);
+  properties.Check();
+}
+
 Deviations DeviationsOf(const SpeckleParameters& parameters)
 {
-  if (!(parameters.StandardDeviation > 0) || !std::isfinite(parameters.StandardDeviation))
-  {
-    throw std::invalid_argument("the standard deviation is " +
-      FormatNumber(parameters.StandardDeviation) + " mm; it must be above 0");
-  }
   Deviations deviations{};
   for (int a = 0; a < 3; ++a)
   {
@@ -506,8 +505,19 @@ void FilterMorphology(const ImageView<const T>& input, const ImageView<T>& outpu
 }
 }
 
+void SpeckleParameters::Describe(Properties& properties) const
+{
+  properties.Add("Operation", static_cast<int>(this->Operation), SpeckleOperationNames)
+    .Add("KernelSize", this->KernelSize, ValueRange::Between(1, Window::MaximumSize, "voxels"))
+    .Add("KernelShape", static_cast<int>(this->Shape), WindowShapeNames)
+    .Add("Rank", this->Percentile, ValueRange::Between(0, 100))
+    .Add("AdaptiveStrength", this->AdaptiveStrength, StrengthRange)
+    .Add("StandardDeviation", this->StandardDeviation, ValueRange::Above(0, "mm"));
+}
+
 Extent GetSpeckleInput(const SpeckleParameters& parameters, const Extent& box)
 {
+  CheckParameters(parameters);
   switch (parameters.Operation)
   {
     case SpeckleOperation::Gaussian:
@@ -516,12 +526,6 @@ Extent GetSpeckleInput(const SpeckleParameters& parameters, const Extent& box)
       return LaplacianReach(DeviationsOf(parameters)).Grow(box, true, true);
     default:
       break;
-  }
-  if (parameters.Operation == SpeckleOperation::Rank &&
-    !(parameters.Percentile >= 0 && parameters.Percentile <= 100))
-  {
-    throw std::invalid_argument("the rank is " + FormatNumber(parameters.Percentile) +
-      "; it must be a percentile from 0 (the least) to 100 (the greatest)");
   }
   const Window window = WindowOf(parameters);
   const std::vector<MorphologyStep> steps = StepsOf(parameters.Operation);
@@ -578,6 +582,7 @@ void FilterSpeckleLaplacian(const ImageView<const T>& input,
   const ImageView<LaplacianType<T>>& output, const SpeckleParameters& parameters,
   Execution& execution)
 {
+  CheckParameters(parameters);
   FilterLaplacianOfGaussian(
     input, output, DeviationsOf(parameters), parameters.Spacing, parameters.Set, execution);
 }

@@ -7,9 +7,12 @@
 #include "lacunaExecution.h"
 #include "lacunaImageView.h"
 #include "lacunaLinearFilters.h"
+#include "lacunaProperties.h"
 #include "lacunaRankFilter.h"
 #include "lacunaVectorUnit.h"
 #include "lacunaWindow.h"
+
+#include <array>
 
 namespace lacuna
 {
@@ -66,18 +69,23 @@ enum class SpeckleOperation
   Gaussian,
   LaplacianOfGaussian
 };
+inline constexpr std::array<const char*, 13> SpeckleOperationNames{ "Median", "Rank", "Minimum",
+  "Maximum", "Opening", "Closing", "OpenClose", "CloseOpen", "Mode", "AdaptiveMedian", "Mean",
+  "Gaussian", "LaplacianOfGaussian" };
 
 struct SpeckleParameters
 {
   SpeckleOperation Operation = SpeckleOperation::Median;
   std::array<int, 3> KernelSize{ 5, 5, 1 };
   WindowShape Shape = WindowShape::Box; ///< not for Mean, Gaussian, LaplacianOfGaussian
-  double Percentile = 50;               ///< of Rank, 0 to 100
+  double Percentile = 50;               ///< of Rank
   double AdaptiveStrength = 10;         ///< of AdaptiveMedian
   /// Of Gaussian and LaplacianOfGaussian, in mm, along the axes whose KernelSize exceeds 1.
   double StandardDeviation = 1.4142135623730951;
   std::array<double, 3> Spacing{ 1, 1, 1 }; ///< mm between samples
   VectorUnit Set = BestVectorUnit();
+
+  void Describe(Properties& properties) const; ///< with the ranges
 };
 
 /// The box of all samples that the results in box depend on. Throws std::invalid_argument when

@@ -17,6 +17,7 @@ enum class WindowShape
   Box,
   Ellipsoid
 };
+inline constexpr std::array<const char*, 2> WindowShapeNames{ "Box", "Ellipsoid" };
 
 /// A window of Size samples per axis, 1 to MaximumSize each. It covers the offsets -Lower(a) ...
 /// Upper(a) along axis a with Lower = Size/2 rounded down, so an odd window is centred and an even

@@ -177,7 +177,7 @@ void TestAttenuations()
   vtkNew<vtkLacunaOccludedAngle> function;
   function->SetInputData(circle);
   function->SetNumberOfDirections(40);
-  function->SetAttenuation(vtkLacunaOccludedAngle::OPACITY_FUNCTION);
+  function->SetAttenuation(vtkLacunaOccludedAngle::ByOpacityFunction);
   function->SetOpacityFunction(ramp);
   function->Update();
   vtkNew<vtkImageData> coefficients;
@@ -192,7 +192,7 @@ void TestAttenuations()
   vtkNew<vtkLacunaOccludedAngle> array;
   array->SetInputData(coefficients);
   array->SetNumberOfDirections(40);
-  array->SetAttenuation(vtkLacunaOccludedAngle::ARRAY);
+  array->SetAttenuation(vtkLacunaOccludedAngle::ByArray);
   array->Update();
   for (vtkIdType i = 0; i < circle->GetNumberOfPoints(); i += 7)
   {
@@ -374,9 +374,9 @@ int TestOccludedAngle(int, char*[])
   vtkNew<vtkLacunaOccludedAngle> filter;
   std::ostringstream text;
   filter->Print(text);
-  for (const char* name : { "ScalarArray", "Mode", "Attenuation", "OpacityFunction",
-         "NumberOfDirections", "ThresholdsOverPi", "LocalRadii", "ObjectOpacity", "Dilation",
-         "KeepData", "MedianKernel", "ReconstructionSpace", "KeepIterations" })
+  for (const char* name : { "ScalarArray", "Mode", "Attenuation", "NumberOfDirections",
+         "ThresholdsOverPi", "LocalRadii", "ObjectOpacity", "Dilation", "KeepData", "MedianKernel",
+         "ReconstructionSpace", "KeepIterations" })
   {
     LACUNA_CHECK(text.str().find(name) != std::string::npos);
   }

@@ -81,7 +81,7 @@ int TestOccludedAngleErrors(int, char*[])
       vtkNew<vtkPiecewiseFunction> function;
       function->AddPoint(0, 1);
       filter->SetOpacityFunction(function);
-      filter->SetAttenuation(Filter::OPACITY_FUNCTION);
+      filter->SetAttenuation(Filter::ByOpacityFunction);
       filter->SetInputData(nothing);
     });
   Expect("not a finite number at voxel (9, 4, 3)",
@@ -93,17 +93,17 @@ int TestOccludedAngleErrors(int, char*[])
   Expect("negative or not a number at voxel (6, 2, 1)",
     [](Filter* filter, vtkImageData* image)
     {
-      filter->SetAttenuation(Filter::ARRAY);
+      filter->SetAttenuation(Filter::ByArray);
       image->SetScalarComponentFromDouble(6, 2, 1, 0, -0.25);
     });
   Expect("negative or not a number at voxel (6, 2, 1)",
     [](Filter* filter, vtkImageData* image)
     {
-      filter->SetAttenuation(Filter::ARRAY);
+      filter->SetAttenuation(Filter::ByArray);
       image->SetScalarComponentFromDouble(6, 2, 1, 0, std::nan(""));
     });
   Expect("no OpacityFunction",
-    [](Filter* filter, vtkImageData*) { filter->SetAttenuation(Filter::OPACITY_FUNCTION); });
+    [](Filter* filter, vtkImageData*) { filter->SetAttenuation(Filter::ByOpacityFunction); });
   Expect("there is no threshold",
     [](Filter* filter, vtkImageData*) { filter->SetNumberOfThresholdsOverPi(0); });
   Expect("LocalRadii has 2 values and ThresholdsOverPi 3",
@@ -112,21 +112,35 @@ int TestOccludedAngleErrors(int, char*[])
       filter->SetThresholdsOverPi(2, 2);
       filter->SetLocalRadii(1, 5);
     });
-  Expect("iteration 2 has the threshold 4.5 pi",
+  Expect("ThresholdsOverPi is 4.5; it must be from 0 to 4",
     [](Filter* filter, vtkImageData*) { filter->SetThresholdsOverPi(1, 4.5); });
-  Expect(
-    "a radius not negative", [](Filter* filter, vtkImageData*) { filter->SetLocalRadii(0, -3); });
+  Expect("ThresholdsOverPi is 2.5; in a 2-D image it must be at most 2",
+    [](Filter* filter, vtkImageData* image)
+    {
+      image->SetDimensions(10, 12, 1);
+      image->AllocateScalars(VTK_FLOAT, 1);
+      image->GetPointData()->GetScalars()->Fill(0);
+      image->SetScalarComponentFromDouble(5, 4, 0, 0, 1);
+      filter->SetThresholdsOverPi(0, 2.5);
+    });
+  Expect("LocalRadii is -3 mm; it must be 0 (whole space) or above 0 mm",
+    [](Filter* filter, vtkImageData*) { filter->SetLocalRadii(0, -3); });
+  Expect("Mode is 2; it must be 0 (Continuous) or 1 (Binary)",
+    [](Filter* filter, vtkImageData*) { filter->SetMode(2); });
+  Expect("Attenuation is -1; it must be 0 (Linear in Range), 1 (Opacity Function) or 2 (Array)",
+    [](Filter* filter, vtkImageData*) { filter->SetAttenuation(-1); });
   Expect("smaller than a voxel; give at least 0.5",
     [](Filter* filter, vtkImageData*) { filter->SetLocalRadii(0, 0.4); });
-  Expect(
-    "ObjectOpacity is 1.5", [](Filter* filter, vtkImageData*) { filter->SetObjectOpacity(1.5); });
+  Expect("ObjectOpacity is 1.5; it must be above 0 and at most 1",
+    [](Filter* filter, vtkImageData*) { filter->SetObjectOpacity(1.5); });
   for (const int directions : { INT_MIN, -1, 0, 1, 10000001 })
   {
-    Expect("NumberOfDirections is " + std::to_string(directions) + "; give 2 to 10000000",
+    Expect("NumberOfDirections is " + std::to_string(directions) + "; it must be from 2 to 1e+07",
       [directions](Filter* filter, vtkImageData*) { filter->SetNumberOfDirections(directions); });
   }
   Expect("MedianKernel is 4", [](Filter* filter, vtkImageData*) { filter->SetMedianKernel(4); });
-  Expect("the dilation is 1.0", [](Filter* filter, vtkImageData*) { filter->SetDilation(1); });
+  Expect("Dilation is 1 voxels; it must be from 0 to 0.9 voxels",
+    [](Filter* filter, vtkImageData*) { filter->SetDilation(1); });
   Expect("contains none of the data",
     [](Filter* filter, vtkImageData*)
     {
@@ -158,8 +172,8 @@ int TestOccludedAngleErrors(int, char*[])
   full->GetPointData()->GetScalars()->Fill(50);
   vtkNew<vtkLacunaOccludedAngle> filter;
   filter->SetInputData(full);
-  filter->SetMode(Filter::BINARY);
-  filter->SetAttenuation(Filter::ARRAY);
+  filter->SetMode(Filter::Binary);
+  filter->SetAttenuation(Filter::ByArray);
   filter->SetNumberOfDirections(10);
   filter->Update();
   double range[2];

@@ -170,9 +170,9 @@ int TestOcclusionSurface(int, char*[])
   Expect("no voxel of the angle image is object",
     [](Filter*, vtkImageData* angle, vtkImageData*)
     { angle->GetPointData()->GetArray("Object")->Fill(0); });
-  Expect("Smoothing must be",
+  Expect("Smoothing is -1; it must be above 0",
     [](Filter* filter, vtkImageData*, vtkImageData*) { filter->SetSmoothing(-1); });
-  Expect("Tolerance must be",
+  Expect("Tolerance is 0 voxel edges; it must be from 0.001 to 0.5 voxel edges",
     [](Filter* filter, vtkImageData*, vtkImageData*) { filter->SetTolerance(0); });
   Expect("flat",
     [](Filter*, vtkImageData* angle, vtkImageData* data)

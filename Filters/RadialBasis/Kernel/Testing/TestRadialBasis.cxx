@@ -446,12 +446,16 @@ TEST(RadialBasis, RefusesAMatrixAboveTheLimit)
   ExpectContains(ErrorOf([&] { Fit<2>(nodes, values, options); }), "80000 bytes");
 }
 
-TEST(RadialBasis, RefusesBadSmoothing)
+TEST(RadialBasis, RefusesBadOptions)
 {
   lacuna::RadialBasisOptions options;
   options.Smoothing = -1;
-  ExpectContains(
-    ErrorOf([&] { Fit<2>(Scatter2(9), std::vector<double>(9, 1.0), options); }), "smoothing");
+  ExpectContains(ErrorOf([&] { Fit<2>(Scatter2(9), std::vector<double>(9, 1.0), options); }),
+    "Smoothing is -1; it must be 0 or more");
+  options.Smoothing = 0;
+  options.Accuracy = 1;
+  ExpectContains(ErrorOf([&] { Fit<2>(Scatter2(9), std::vector<double>(9, 1.0), options); }),
+    "Accuracy is 1; it must be less");
 }
 
 TEST(RadialBasis, StopsWhenAsked)

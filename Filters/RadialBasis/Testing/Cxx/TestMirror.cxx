@@ -286,15 +286,15 @@ void TestErrors()
   vtkNew<vtkLacunaMirror> mirror;
   mirror->SetInputData(scene.Image);
   mirror->SetPlaneMethod(7);
-  fails(mirror, "PlaneMethod is 7");
+  fails(mirror, "PlaneMethod is 7; it must be 0 (BestSymmetry) or 1 (Given)");
   mirror->SetPlaneMethod(vtkLacunaMirror::Given);
   mirror->SetInterpolation(-1);
-  fails(mirror, "Interpolation is -1");
+  fails(mirror, "Interpolation is -1; it must be 0 (BSpline), 1 (Linear) or 2 (Nearest)");
   mirror->SetInterpolation(vtkLacunaMirror::Linear);
   mirror->SetNormal(0, 0, 0);
-  fails(mirror, "Normal not 0 0 0");
+  fails(mirror, "Normal must not be 0 0 0");
   mirror->SetNormal(1, 0, std::numeric_limits<double>::quiet_NaN());
-  fails(mirror, "must be numbers");
+  fails(mirror, "Normal is nan; it must be a finite number");
   mirror->SetNormal(1e160, 0, 0); // its length is beyond all numbers
   fails(mirror, "nor too long");
   mirror->SetNormal(1, 0, 0);

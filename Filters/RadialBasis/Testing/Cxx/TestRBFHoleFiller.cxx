@@ -371,8 +371,8 @@ int TestRBFHoleFiller(int, char*[])
   std::ostringstream text;
   filler->Print(text);
   for (const char* name : { "Kernel", "DefectRegion", "DefectArray", "SupportArray",
-         "SupportMargin: 12", "NodeSpacing: 1", "Smoothing: 0", "OutputMargin: 0", "Trend: 0",
-         "KernelLength: 0", "OutputSpacing: 0 0 0", "Accuracy: 0.0001", "Solver: 0" })
+         "SupportMargin: 12", "NodeSpacing: 1", "Smoothing: 0", "OutputMargin: 0", "Trend: None",
+         "KernelLength: 0", "OutputSpacing: 0,0", "Accuracy: 1e-04", "Solver: Auto" })
   {
     LACUNA_CHECK(text.str().find(name) != std::string::npos);
   }

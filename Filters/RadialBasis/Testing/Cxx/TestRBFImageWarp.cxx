@@ -135,14 +135,17 @@ const Case Errors[] = {
     { from->GetPoints()->SetPoint(6, std::nan(""), 0, 0); },
     "node 6" },
   { "kernel", [](vtkPolyData*, vtkPolyData*, vtkLacunaRBFImageWarp* w) { w->SetKernel(4); },
-    "Kernel is 4" },
+    "Kernel is 4; it must be 0 (ThinPlate), 1 (Linear), 2 (Triharmonic) or 3 (Cubic)" },
   { "interpolation",
     [](vtkPolyData*, vtkPolyData*, vtkLacunaRBFImageWarp* w) { w->SetInterpolation(3); },
-    "Interpolation is 3" },
+    "Interpolation is 3; it must be 0 (Nearest), 1 (Linear) or 2 (Cubic)" },
   { "accuracy", [](vtkPolyData*, vtkPolyData*, vtkLacunaRBFImageWarp* w) { w->SetAccuracy(0); },
-    "Accuracy" },
+    "Accuracy is 0 voxels; it must be above 0 and at most 1 voxels" },
+  { "coarse accuracy",
+    [](vtkPolyData*, vtkPolyData*, vtkLacunaRBFImageWarp* w) { w->SetAccuracy(1); },
+    "Accuracy is 1 voxel; it must be less" },
   { "smoothing", [](vtkPolyData*, vtkPolyData*, vtkLacunaRBFImageWarp* w) { w->SetSmoothing(-1); },
-    "smoothing" },
+    "Smoothing is -1; it must be 0 or more" },
 };
 
 void CheckErrors()

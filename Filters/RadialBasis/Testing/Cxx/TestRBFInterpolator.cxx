@@ -269,23 +269,27 @@ const Case Errors[] = {
       }
     },
     "one line along an axis" },
-  { "kernel", [](vtkPolyData*, vtkLacunaRBFInterpolator* f) { f->SetKernel(6); }, "Kernel is 6" },
-  { "solver", [](vtkPolyData*, vtkLacunaRBFInterpolator* f) { f->SetSolver(-1); }, "Solver is -1" },
+  { "kernel", [](vtkPolyData*, vtkLacunaRBFInterpolator* f) { f->SetKernel(6); },
+    "Kernel is 6; it must be 0 (ThinPlate), 1 (Linear), 2 (Triharmonic), 3 (Cubic), 4 (Gaussian) "
+    "or "
+    "5 (Multiquadric)" },
+  { "solver", [](vtkPolyData*, vtkLacunaRBFInterpolator* f) { f->SetSolver(-1); },
+    "Solver is -1; it must be 0 (Auto), 1 (Direct) or 2 (Fast)" },
   { "accuracy", [](vtkPolyData*, vtkLacunaRBFInterpolator* f) { f->SetAccuracy(1.5); },
-    "accuracy" },
+    "Accuracy is 1.5; it must be from 0 to 1" },
   { "length",
     [](vtkPolyData*, vtkLacunaRBFInterpolator* f)
     {
       f->SetKernel(vtkLacunaRBFInterpolator::Gaussian);
       f->SetKernelLength(-3);
     },
-    "length of the kernel" },
+    "KernelLength is -3; it must be 0 or more" },
   { "negative tolerance",
     [](vtkPolyData*, vtkLacunaRBFInterpolator* f) { f->SetCenterTolerance(-1); },
-    "CenterTolerance" },
+    "CenterTolerance is -1; it must be 0 or more" },
   { "tolerance",
     [](vtkPolyData*, vtkLacunaRBFInterpolator* f) { f->SetCenterTolerance(std::nan("")); },
-    "CenterTolerance" },
+    "CenterTolerance is nan; it must be 0 or more" },
   { "tolerance and errors",
     [](vtkPolyData*, vtkLacunaRBFInterpolator* f)
     {
@@ -301,7 +305,7 @@ const Case Errors[] = {
     },
     "lower the smoothing" },
   { "smoothing", [](vtkPolyData*, vtkLacunaRBFInterpolator* f) { f->SetSmoothing(-3); },
-    "smoothing" },
+    "Smoothing is -3; it must be 0 or more" },
   { "errors",
     [](vtkPolyData* p, vtkLacunaRBFInterpolator* f)
     {
@@ -310,7 +314,7 @@ const Case Errors[] = {
     },
     "node 3" },
   { "spacing", [](vtkPolyData*, vtkLacunaRBFInterpolator* f) { f->SetOutputSpacing(-1, 1, 1); },
-    "OutputSpacing" },
+    "OutputSpacing is -1; it must be 0 or more" },
   { "memory",
     [](vtkPolyData*, vtkLacunaRBFInterpolator* f) { f->SetOutputSpacing(1e-4, 1e-4, 1e-4); },
     "the interpolated image" },
@@ -330,11 +334,11 @@ const Case Errors[] = {
   { "bounds",
     [](vtkPolyData*, vtkLacunaRBFInterpolator* f)
     { f->SetOutputBounds(0, std::numeric_limits<double>::infinity(), 0, 1, 0, 1); },
-    "OutputBounds" },
+    "OutputBounds is inf; it must be a finite number" },
   { "bounds that would be those of the points",
     [](vtkPolyData*, vtkLacunaRBFInterpolator* f)
     { f->SetOutputBounds(0, 1, 1, -std::numeric_limits<double>::infinity(), 0, 1); },
-    "OutputBounds" },
+    "OutputBounds is -inf; it must be a finite number" },
 };
 
 void CheckErrors()

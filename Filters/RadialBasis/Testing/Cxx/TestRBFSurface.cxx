@@ -90,8 +90,8 @@ void CheckPoints()
   CheckSurface(filter->GetOutput(), 0.004, "points with normals");
   LACUNA_CHECK(GetField(filter->GetOutput(), "ResidualMaximum") < 0.05);
   const std::vector<std::string> steps = lacuna::Provenance::Get(filter->GetOutput());
-  LACUNA_CHECK(
-    steps.size() == 1 && steps[0].find("Kernel=1 Smoothing=0 Accuracy=0.01") != std::string::npos);
+  LACUNA_CHECK(steps.size() == 1 &&
+    steps[0].find("Kernel=Triharmonic Smoothing=0 Accuracy=0.01") != std::string::npos);
   // the nearest of 1500 points on 5500 mm^2 is within 2 mm
   double range[2];
   filter->GetOutput()->GetPointData()->GetArray("Distance")->GetRange(range);

@@ -34,9 +34,11 @@ void CheckError(const std::function<void(vtkLacunaRBFSurface*)>& spoil, const st
 void CheckErrors()
 {
   using Filter = vtkLacunaRBFSurface;
-  CheckError([](Filter* f) { f->SetKernel(2); }, "Kernel is 2");
-  CheckError([](Filter* f) { f->SetSmoothing(-1); }, "Smoothing must be");
-  CheckError([](Filter* f) { f->SetTolerance(0); }, "Tolerance must be");
+  CheckError([](Filter* f) { f->SetKernel(2); },
+    "Kernel is 2; it must be 0 (Biharmonic) or 1 (Triharmonic)");
+  CheckError([](Filter* f) { f->SetSmoothing(-1); },
+    "Smoothing is -1 mm; it must be 0 (estimated) or above 0 mm");
+  CheckError([](Filter* f) { f->SetTolerance(0); }, "Tolerance is 0 mm; it must be above 0 mm");
   CheckError([](Filter* f) { f->SetErrorArray("Nothing"); }, "no point array 'Nothing'");
   CheckError([](Filter* f) { f->SetSideArray("Nothing"); }, "has a point array 'Nothing'");
   CheckError([](Filter* f) { f->SetDistanceSpacing(1); }, "needs OutputBounds on all axes");
@@ -48,7 +50,7 @@ void CheckErrors()
     },
     "needs CapBoundary");
   CheckError([](Filter* f) { f->SetOutputBounds(0, std::nan(""), 0, 1, 0, 1); },
-    "OutputBounds has a number that is not finite");
+    "OutputBounds is nan mm; it must be a finite number");
   CheckError([](Filter* f) { f->SetOutputBounds(500, 600, 0, 1, 0, 1); }, "outside of the bounds");
   CheckError(
     [](Filter* f)

@@ -304,17 +304,32 @@ void TestBadInput()
   };
   fails(volume, "view direction (0, 0, 0)", [](Caster* c) { c->SetViewDirection(0, 0, 0); });
   fails(volume, "view direction (1e+200", [](Caster* c) { c->SetViewDirection(1e200, 0, 0); });
-  fails(volume, "view-up vector", [](Caster* c) { c->SetViewUp(0, vtkMath::Nan(), 0); });
+  fails(volume, "ViewUp is nan; it must be a finite number",
+    [](Caster* c) { c->SetViewUp(0, vtkMath::Nan(), 0); });
   fails(volume, "view-up vector", [](Caster* c) { c->SetViewUp(0, 1e200, 0); });
   fails(volume, "parallel", [](Caster* c) { c->SetViewUp(0, 0, 3); });
-  fails(volume, "pixel spacing of -1", [](Caster* c) { c->SetPixelSpacing(-1); });
-  fails(volume, "pixel spacing of nan", [](Caster* c) { c->SetPixelSpacing(vtkMath::Nan()); });
+  fails(volume, "PixelSpacing is -1 mm; it must be 0 (smallest voxel edge) or above 0 mm",
+    [](Caster* c) { c->SetPixelSpacing(-1); });
+  fails(volume, "PixelSpacing is nan mm; it must be 0 (smallest voxel edge) or above 0 mm",
+    [](Caster* c) { c->SetPixelSpacing(vtkMath::Nan()); });
   fails(volume, "too large", [](Caster* c) { c->SetPixelSpacing(1e-7); });
   fails(volume, "too large", [](Caster* c) { c->SetImageSize(2000000000, 2000000000); });
-  fails(volume, "-5 x 10", [](Caster* c) { c->SetImageSize(-5, 10); });
+  fails(volume, "ImageSize is -5 pixels; it must be 0 (whole volume) or 1 pixels or more",
+    [](Caster* c) { c->SetImageSize(-5, 10); });
+  fails(volume,
+    "Interpolation is 3; it must be 0 (BSpline), 1 (InterpolatingBSpline) or 2 (Trilinear)",
+    [](Caster* c) { c->SetInterpolation(3); });
+  fails(volume, "SolidSide is -1; it must be 0 (Above) or 1 (Below)",
+    [](Caster* c) { c->SetSolidSide(-1); });
+  fails(volume, "NormalMethod is 2; it must be 0 (Analytic) or 1 (GreyLevel)",
+    [](Caster* c) { c->SetNormalMethod(2); });
+  fails(volume, "Projection is 2; it must be 0 (Parallel) or 1 (Perspective)",
+    [](Caster* c) { c->SetProjection(2); });
   fails(volume, "no iso-value", [](Caster* c) { c->SetNumberOfIsoValues(0); });
-  fails(volume, "IsoValues is 500,nan", [](Caster* c) { c->SetIsoValue(1, std::nan("")); });
-  fails(volume, "IsoValues is -inf", [](Caster* c) { c->SetIsoValue(0, -HUGE_VAL); });
+  fails(volume, "IsoValues is nan grey level; it must be a finite number",
+    [](Caster* c) { c->SetIsoValue(1, std::nan("")); });
+  fails(volume, "IsoValues is -inf grey level; it must be a finite number",
+    [](Caster* c) { c->SetIsoValue(0, -HUGE_VAL); });
   fails(volume, "CutAway: of the sphere Radius is -7",
     [](Caster* c)
     {

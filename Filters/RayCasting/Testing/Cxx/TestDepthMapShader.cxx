@@ -276,7 +276,7 @@ void TestCutAway()
   LACUNA_CHECK(p.At(29, 26) == lit);
   std::ostringstream text;
   p.Shader->Print(text);
-  LACUNA_CHECK_CONTAINS(text.str(), "Normal=0,0,-1\" CapCutAway=off");
+  LACUNA_CHECK_CONTAINS(text.str(), "Normal=0,0,-1\"\n  CapCutAway: off");
   p.Shader->SetCutAway(nullptr);
   LACUNA_CHECK(p.At(29, 26) == 26);
 }

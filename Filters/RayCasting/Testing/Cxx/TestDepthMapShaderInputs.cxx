@@ -75,7 +75,7 @@ void TestBadInput()
   LACUNA_CHECK_CONTAINS(errorOf(map), "'Fitted'");
   shader->SetDepthArray("Depth");
   shader->SetNormalMethod(4);
-  LACUNA_CHECK_CONTAINS(errorOf(map), "NormalMethod is 4");
+  LACUNA_CHECK_CONTAINS(errorOf(map), "NormalMethod is 4; it must be 0 (Stored)");
   shader->SetNormalMethod(vtkLacunaDepthMapShader::Predicate);
   LACUNA_CHECK(errorOf(map).empty());
   for (const double bad : { -1.0, 90.5, Nan, std::numeric_limits<double>::infinity() })
@@ -88,10 +88,11 @@ void TestBadInput()
   LACUNA_CHECK_CONTAINS(errorOf(map), "DepthCue is");
   shader->SetDepthCue(0);
   shader->SetShadowBias(-1);
-  LACUNA_CHECK_CONTAINS(errorOf(map), "ShadowBias is");
+  LACUNA_CHECK_CONTAINS(errorOf(map), "ShadowBias is -1 mm; it must be 0 (a tenth of a voxel)");
   shader->SetShadowBias(0);
   shader->AddLight(0, 0, 1, 0.5, 1);
-  LACUNA_CHECK_CONTAINS(errorOf(map), "0 for a direction or 1 for a position");
+  LACUNA_CHECK_CONTAINS(
+    errorOf(map), "number 0.500000; it must be 0 for a direction or 1 for a position");
   shader->RemoveAllLights();
   shader->AddLight(0, 0, 0, 0, 1);
   LACUNA_CHECK_CONTAINS(errorOf(map), "light 0 has no direction");
@@ -136,7 +137,7 @@ void TestBadInput()
   }
   std::ostringstream text;
   shader->Print(text);
-  LACUNA_CHECK_CONTAINS(text.str(), "MaximumAngleChange=20");
+  LACUNA_CHECK_CONTAINS(text.str(), "MaximumAngleChange: 20 (from 0 to 180 degrees)");
 }
 }
 

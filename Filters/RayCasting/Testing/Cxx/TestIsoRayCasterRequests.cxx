@@ -408,7 +408,10 @@ void TestErrors()
   CheckError(caster, "behind the eye");
   caster->SetEyePosition(0, 0, 200);
   caster->SetViewAngle(0);
-  CheckError(caster, "view angle of 0");
+  CheckError(caster, "ViewAngle is 0 degrees; it must be above 0 and at most 180 degrees");
+  caster->SetViewAngle(180);
+  CheckError(caster, "view angle of 180");
+  caster->SetViewAngle(30);
   caster->SetProjection(Caster::Parallel);
   caster->SetPlaneOrigin(0, VTK_DOUBLE_MAX, 3);
   CheckError(caster, "give all three");

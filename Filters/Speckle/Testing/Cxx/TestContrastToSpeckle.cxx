@@ -121,8 +121,9 @@ void TestProvenance()
   contrast->Update();
   const auto steps = lacuna::Provenance::Get(contrast->GetOutput());
   LACUNA_CHECK(steps.size() == 1);
-  LACUNA_CHECK_CONTAINS(
-    steps.at(0), "InsideArray=Left OutsideBounds=104,200,0,5.5,0,0 IsoValue=128");
+  LACUNA_CHECK_CONTAINS(steps.at(0),
+    "InsideArray=Left InsideBounds=1,-1,1,-1,1,-1 OutsideArray=\"\" "
+    "OutsideBounds=104,200,0,5.5,0,0 IsoValue=128");
 }
 
 void TestAbort()
@@ -195,7 +196,7 @@ void TestErrors()
       inside(c);
       c->SetScalarArray("Elsewhere");
     });
-  fails("iso-value is not a number",
+  fails("IsoValue is nan grey level; it must be a finite number",
     [&](auto* c)
     {
       inside(c);

@@ -160,7 +160,7 @@ void TestHonoursRequestedExtents()
   vtkNew<vtkTrivialProducer> producer;
   producer->SetOutput(image);
   producer->SetWholeExtent(const_cast<int*>(extent));
-  for (int operation = 0; operation <= vtkLacunaSpeckleFilter::LAPLACIAN_OF_GAUSSIAN; ++operation)
+  for (int operation = 0; operation <= vtkLacunaSpeckleFilter::LaplacianOfGaussian; ++operation)
   {
     vtkNew<vtkLacunaSpeckleFilter> whole;
     vtkNew<vtkLacunaSpeckleFilter> part;
@@ -256,7 +256,7 @@ void TestAsksForNoMoreThanItNeeds()
   producer->SetWholeExtent(const_cast<int*>(extent));
   vtkNew<vtkLacunaSpeckleFilter> filter;
   filter->SetInputConnection(producer->GetOutputPort());
-  filter->SetOperation(vtkLacunaSpeckleFilter::OPENING);
+  filter->SetOperation(vtkLacunaSpeckleFilter::Opening);
   filter->SetKernelSize(5, 4, 1);
   const int asked[6] = { 0, 9, 50, 59, 3, 3 };
   filter->UpdateExtent(asked);
@@ -333,11 +333,11 @@ void TestTypesAndComponents()
     const auto image = MakeImage(type, extent);
     vtkNew<vtkLacunaSpeckleFilter> filter;
     filter->SetInputData(image);
-    filter->SetOperation(vtkLacunaSpeckleFilter::MAXIMUM);
+    filter->SetOperation(vtkLacunaSpeckleFilter::Maximum);
     filter->Update();
     LACUNA_CHECK(filter->GetOutput()->GetScalarType() == type);
     LACUNA_CHECK(Value(filter->GetOutput(), 5, 5, 1) >= Value(image, 6, 7, 1));
-    filter->SetOperation(vtkLacunaSpeckleFilter::LAPLACIAN_OF_GAUSSIAN);
+    filter->SetOperation(vtkLacunaSpeckleFilter::LaplacianOfGaussian);
     filter->Update();
     LACUNA_CHECK(
       filter->GetOutput()->GetScalarType() == (type == VTK_DOUBLE ? VTK_DOUBLE : VTK_FLOAT));
@@ -420,7 +420,7 @@ void TestMillimetres()
   image->SetScalarComponentFromDouble(40, 40, 0, 0, 1);
   vtkNew<vtkLacunaSpeckleFilter> filter;
   filter->SetInputData(image);
-  filter->SetOperation(vtkLacunaSpeckleFilter::GAUSSIAN);
+  filter->SetOperation(vtkLacunaSpeckleFilter::Gaussian);
   filter->SetStandardDeviation(3);
   filter->Update();
   vtkImageData* output = filter->GetOutput();
@@ -447,29 +447,37 @@ void TestErrors()
   };
   const auto has = [](const std::string& text, const char* part)
   { return text.find(part) != std::string::npos; };
-  LACUNA_CHECK(has(errors(image, [](auto* f) { f->SetKernelSize(5, 0, 1); }), "5 x 0 x 1"));
-  LACUNA_CHECK(has(errors(image, [](auto* f) { f->SetKernelSize(1, 1, 1000); }), "1 to 255"));
+  LACUNA_CHECK(has(errors(image, [](auto* f) { f->SetKernelSize(5, 0, 1); }),
+    "KernelSize is 0 voxels; it must be from 1 to 255 voxels"));
+  LACUNA_CHECK(has(errors(image, [](auto* f) { f->SetKernelSize(1, 1, 1000); }),
+    "KernelSize is 1000 voxels; it must be from 1 to 255 voxels"));
   LACUNA_CHECK(has(errors(image,
                      [](auto* f)
                      {
-                       f->SetOperation(vtkLacunaSpeckleFilter::RANK);
+                       f->SetOperation(vtkLacunaSpeckleFilter::AnyRank);
                        f->SetRank(101);
                      }),
-    "percentile"));
+    "Rank is 101; it must be from 0 to 100"));
   LACUNA_CHECK(has(errors(image,
                      [](auto* f)
                      {
-                       f->SetOperation(vtkLacunaSpeckleFilter::GAUSSIAN);
+                       f->SetOperation(vtkLacunaSpeckleFilter::Gaussian);
                        f->SetStandardDeviation(0);
                      }),
-    "above 0"));
+    "StandardDeviation is 0 mm; it must be above 0 mm"));
   LACUNA_CHECK(has(errors(image,
                      [](auto* f)
                      {
-                       f->SetOperation(vtkLacunaSpeckleFilter::ADAPTIVE_MEDIAN);
+                       f->SetOperation(vtkLacunaSpeckleFilter::AdaptiveMedian);
                        f->SetAdaptiveStrength(-1);
                      }),
-    "adaptive strength"));
+    "AdaptiveStrength is -1; it must be 0 or more"));
+  LACUNA_CHECK(has(errors(image, [](auto* f) { f->SetOperation(13); }),
+    "Operation is 13; it must be 0 (Median), 1 (Rank), 2 (Minimum), 3 (Maximum), 4 (Opening), "
+    "5 (Closing), 6 (OpenClose), 7 (CloseOpen), 8 (Mode), 9 (AdaptiveMedian), 10 (Mean), "
+    "11 (Gaussian) or 12 (LaplacianOfGaussian)"));
+  LACUNA_CHECK(has(errors(image, [](auto* f) { f->SetKernelShape(-1); }),
+    "KernelShape is -1; it must be 0 (Box) or 1 (Ellipsoid)"));
   vtkNew<vtkImageData> bare;
   bare->SetDimensions(4, 4, 1);
   LACUNA_CHECK(has(errors(bare, [](auto*) {}), "no active point scalars"));
@@ -479,7 +487,7 @@ void TestErrors()
   LACUNA_CHECK(has(errors(image,
                      [](auto* f)
                      {
-                       f->SetOperation(vtkLacunaSpeckleFilter::LAPLACIAN_OF_GAUSSIAN);
+                       f->SetOperation(vtkLacunaSpeckleFilter::LaplacianOfGaussian);
                        f->SetStandardDeviation(1e300);
                      }),
     "must be 0 to 166"));
@@ -566,7 +574,7 @@ void TestPrint()
   vtkNew<vtkLacunaSpeckleFilter> filter;
   std::ostringstream text;
   filter->Print(text);
-  for (const char* name : { "ScalarArray: ", "Operation: Median", "KernelSize: 5 5 1",
+  for (const char* name : { "ScalarArray: ", "Operation: Median", "KernelSize: 5,5,1",
          "KernelShape: Box", "Rank: 50", "AdaptiveStrength: 10", "StandardDeviation: 1.4" })
   {
     LACUNA_CHECK(text.str().find(name) != std::string::npos);
