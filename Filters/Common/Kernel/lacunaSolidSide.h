@@ -4,6 +4,8 @@
 #ifndef lacunaSolidSide_h
 #define lacunaSolidSide_h
 
+#include <array>
+
 namespace lacuna
 {
 /// Where the solid is. A field equal to the iso-value is solid.
@@ -12,5 +14,6 @@ enum class SolidSide
   Above,
   Below
 };
+inline constexpr std::array<const char*, 2> SolidSideNames{ "Above", "Below" };
 }
 #endif
