@@ -6,6 +6,7 @@
 
 #include "lacunaPoseMatching.h"
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -26,6 +27,7 @@ struct PoseRequest
     FrameNumber = 1,
     Time = 2
   };
+  static constexpr std::array<const char*, 3> MatchingNames{ "Order", "FrameNumber", "Time" };
 
   PoseTableOptions Poses;
   std::vector<std::string> PoseColumns;

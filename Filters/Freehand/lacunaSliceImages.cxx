@@ -33,18 +33,6 @@ struct Range
   int First, Last;
 };
 
-void CheckClip(const std::array<int, 4>& clip)
-{
-  if (*std::min_element(clip.begin(), clip.end()) < 0)
-  {
-    std::ostringstream message;
-    message << "ClipRectangle is " << clip[0] << " " << clip[1] << " " << clip[2] << " " << clip[3]
-            << "; first column, first row, width and height count pixels of the image and must not "
-               "be negative (a width or height of 0 reaches to the edge)";
-    throw std::runtime_error(message.str());
-  }
-}
-
 // Cuts one axis of a stack to a part of the clip rectangle; size 0 reaches to the edge. extent: of
 // that axis.
 Range Clip(const int extent[2], double origin, double spacing, int axis, int start, int size)
@@ -216,7 +204,6 @@ std::vector<std::int64_t> lacuna::SliceImages::FindLayers(vtkIdType slices) cons
 lacuna::SliceImage lacuna::SliceImages::CutFirstLayer(const std::array<int, 4>& clip)
 {
   const int* extent = this->Extent;
-  CheckClip(clip);
   const Range columns = Clip(extent, this->Origin[0], this->Spacing[0], 0, clip[0], clip[2]);
   const Range rows = Clip(extent + 2, this->Origin[1], this->Spacing[1], 1, clip[1], clip[3]);
   this->Window.Origin = { this->Origin[0] + this->Spacing[0] * columns.First,

@@ -5,7 +5,6 @@
 #include "lacunaArrayScalarType.h"
 #include "lacunaExecution.h"
 #include "lacunaPrincipalFrame.h"
-#include "lacunaPropertyRange.h"
 #include "vtkDataArray.h"
 #include "vtkImageData.h"
 #include "vtkLacunaAlgorithm.h"
@@ -13,7 +12,6 @@
 #include "vtkLacunaSweptVolume.h"
 
 #include <algorithm>
-#include <cmath>
 #include <sstream>
 #include <stdexcept>
 
@@ -184,21 +182,10 @@ void lacuna::SweptVolumePlan::ApplyFans(vtkLacunaSweptVolume* filter, lacuna::Sw
 //------------------------------------------------------------------------------
 void lacuna::SweptVolumePlan::ChooseOptions(vtkLacunaSweptVolume* filter)
 {
-  if (!(filter->GetMaximumSliceGap() >= 0))
-  {
-    throw std::runtime_error("MaximumSliceGap must be positive, or 0 for no limit");
-  }
-  this->Options.Interpolation = filter->GetInterpolation() == vtkLacunaSweptVolume::NearestVoxel
-    ? lacuna::SweptVolume::Method::NearestVoxel
-    : lacuna::SweptVolume::Method::BetweenSlices;
+  this->Options.Interpolation =
+    static_cast<lacuna::SweptVolume::Method>(filter->GetInterpolation());
   this->Options.Sampling = static_cast<lacuna::PixelSampling>(filter->GetPixelSampling());
-  this->Options.Compound = filter->GetCompounding() == vtkLacunaSweptVolume::Maximum
-    ? lacuna::Compounding::Maximum
-    : lacuna::Compounding::Mean;
-  if (!(filter->GetFootprintScale() > 0 && std::isfinite(filter->GetFootprintScale())))
-  {
-    throw std::runtime_error("FootprintScale must be above 0");
-  }
+  this->Options.Compound = static_cast<lacuna::Compounding>(filter->GetCompounding());
   this->Options.FootprintScale = filter->GetFootprintScale();
   this->Options.FootprintAcrossSlices = filter->GetFootprintAcrossSlices();
   this->Options.MaximumSliceGap =
@@ -279,7 +266,6 @@ void lacuna::SweptVolumePlan::ChooseGrid(vtkLacunaSweptVolume* filter)
   std::copy_n(filter->GetOutputSpacing(), 3, request.Spacing.data());
   std::copy_n(filter->GetOutputBounds(), 6, request.Bounds.begin());
   request.BytesPerVoxel = this->BytesPerVoxel;
-  lacuna::RequireAtLeast(0, "MemoryLimit", filter->GetMemoryLimit());
   request.MemoryLimit = filter->GetMemoryLimit() * 1048576.0;
   this->Grid = lacuna::MakeVolumeGrid(this->PlacedSlices, request);
 }

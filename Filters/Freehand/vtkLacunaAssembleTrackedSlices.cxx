@@ -2,7 +2,6 @@
 #include "vtkLacunaAssembleTrackedSlices.h"
 
 #include "lacunaFieldData.h"
-#include "lacunaParameterText.h"
 #include "lacunaPoseRecords.h"
 #include "lacunaPrintableText.h"
 #include "lacunaStackPixels.h"
@@ -22,7 +21,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <stdexcept>
 
 using SDDP = vtkStreamingDemandDrivenPipeline;
@@ -32,6 +30,7 @@ namespace
 constexpr const char* IntensityName = "Intensity";
 constexpr const char* ProbeToReferenceName = "ProbeToReference";
 constexpr const char* GateName = "Gate";
+constexpr std::array<const char*, 3> RowOrderNames{ "Automatic", "TopRowFirst", "BottomRowFirst" };
 
 std::array<int, 6> GetExtent(vtkInformation* info, vtkInformationIntegerVectorKey* key)
 {
@@ -354,11 +353,6 @@ void vtkLacunaAssembleTrackedSlices::Assemble(
 std::vector<double> vtkLacunaAssembleTrackedSlices::GetSliceTimes(
   vtkImageData* stack, std::size_t slices) const
 {
-  if (this->FrameRate < 0 || !std::isfinite(this->FrameRate))
-  {
-    throw std::runtime_error("FrameRate is " + std::to_string(this->FrameRate) +
-      "; it must be slices per second, or 0 where the slices have times");
-  }
   std::vector<double> times;
   if (this->FrameRate > 0)
   {
@@ -383,22 +377,16 @@ std::vector<double> vtkLacunaAssembleTrackedSlices::GetSliceTimes(
 }
 
 //------------------------------------------------------------------------------
-std::string vtkLacunaAssembleTrackedSlices::Parameters(int) const
+void vtkLacunaAssembleTrackedSlices::Describe(lacuna::Properties& properties) const
 {
-  constexpr std::array<const char*, 3> formats{ "Matrix", "Quaternion", "Euler" };
-  constexpr std::array<const char*, 4> transforms{ "ProbeToReference", "ReferenceToProbe",
-    "ImageToReference", "ReferenceToImage" };
-  constexpr std::array<const char*, 4> units{ "mm", "m", "cm", "inch" };
-  constexpr std::array<const char*, 3> orders{ "Automatic", "TopRowFirst", "BottomRowFirst" };
-  constexpr std::array<const char*, 3> matchings{ "Order", "FrameNumber", "Time" };
-  return lacuna::ParameterText()
-    .Add("PoseFormat", formats[this->PoseFormat])
-    .Add("PoseTransform", transforms[this->PoseTransform])
-    .Add("LengthUnit", units[this->LengthUnit])
-    .Add("PixelSpacing", this->PixelSpacing)
+  using lacuna::ValueRange;
+  properties.Add("PoseFormat", this->PoseFormat, lacuna::PoseFormatNames)
+    .Add("PoseTransform", this->PoseTransform, lacuna::PoseTransformNames)
+    .Add("LengthUnit", this->LengthUnit, lacuna::LengthUnitNames)
+    .Add("PixelSpacing", this->PixelSpacing, ValueRange::Above(0, "mm").OrZero("of ImageToProbe"))
     .Add("ImageToProbe", this->ImageToProbe)
-    .Add("RowOrder", orders[this->RowOrder])
-    .Add("MatchBy", matchings[this->MatchBy])
+    .Add("RowOrder", this->RowOrder, RowOrderNames)
+    .Add("MatchBy", this->MatchBy, lacuna::PoseRequest::MatchingNames)
     .Add("PoseColumns", this->PoseColumns)
     .Add("FrameColumn", this->FrameColumn)
     .Add("TimestampColumn", this->TimestampColumn)
@@ -406,16 +394,8 @@ std::string vtkLacunaAssembleTrackedSlices::Parameters(int) const
     .Add("GateColumn", this->GateColumn)
     .Add("GateRange", this->GateRange)
     .Add("FirstFrameNumber", this->FirstFrameNumber)
-    .Add("FrameRate", this->FrameRate)
-    .Add("TimeOffset", this->TimeOffset)
-    .Add("MaximumTimeGap", this->MaximumTimeGap)
-    .Add("SkipInvalidPoses", static_cast<bool>(this->SkipInvalidPoses))
-    .Get();
-}
-
-//------------------------------------------------------------------------------
-void vtkLacunaAssembleTrackedSlices::PrintSelf(ostream& os, vtkIndent indent)
-{
-  this->Superclass::PrintSelf(os, indent);
-  os << indent << "Parameters: " << this->Parameters(0) << "\n";
+    .Add("FrameRate", this->FrameRate, ValueRange::Above(0, "1/s").OrZero("times of the file"))
+    .Add("TimeOffset", this->TimeOffset, ValueRange::Any("s"))
+    .Add("MaximumTimeGap", this->MaximumTimeGap, ValueRange::AtLeast(0, "s"))
+    .Add("SkipInvalidPoses", this->SkipInvalidPoses);
 }

@@ -50,7 +50,6 @@ class VTKLACUNAFILTERSFREEHAND_EXPORT vtkLacunaAssembleTrackedSlices
 public:
   static vtkLacunaAssembleTrackedSlices* New();
   vtkTypeMacro(vtkLacunaAssembleTrackedSlices, vtkImageAlgorithm);
-  void PrintSelf(ostream& os, vtkIndent indent) override;
 
   enum PoseFormats
   {
@@ -93,11 +92,11 @@ public:
   /// or Euler (position, then degrees: azimuth about z, elevation about the new y, roll about the
   /// new x). PoseTransform is what it maps, AToB turns coordinates in A into coordinates in B;
   /// LengthUnit is that of the table. Default: Matrix, ProbeToReference, Millimetre.
-  vtkSetClampMacro(PoseFormat, int, Matrix, Euler);
+  vtkSetMacro(PoseFormat, int);
   vtkGetMacro(PoseFormat, int);
-  vtkSetClampMacro(PoseTransform, int, ProbeToReference, ReferenceToImage);
+  vtkSetMacro(PoseTransform, int);
   vtkGetMacro(PoseTransform, int);
-  vtkSetClampMacro(LengthUnit, int, Millimetre, Inch);
+  vtkSetMacro(LengthUnit, int);
   vtkGetMacro(LengthUnit, int);
   ///@}
 
@@ -123,14 +122,14 @@ public:
   /// Which row of the picture comes first in the stack. Slices count rows from the top. Automatic:
   /// the bottom one where the array's name is that of VTK's readers of PNG, JPEG, BMP and
   /// DICOM, which read so, else the top one. Default: Automatic.
-  vtkSetClampMacro(RowOrder, int, Automatic, BottomRowFirst);
+  vtkSetMacro(RowOrder, int);
   vtkGetMacro(RowOrder, int);
   ///@}
 
   ///@{
   /// How rows find their slices: by Order (as many rows as slices), FrameNumber (a column) or Time
   /// (poses are interpolated). Default: Order.
-  vtkSetClampMacro(MatchBy, int, Order, Time);
+  vtkSetMacro(MatchBy, int);
   vtkGetMacro(MatchBy, int);
   ///@}
 
@@ -196,7 +195,7 @@ protected:
   void Announce(const lacuna::Ports& ports) override;
   void Ask(const lacuna::Ports& ports) override;
   void Make(const lacuna::Ports& ports, lacuna::AlgorithmExecution& execution) override;
-  std::string Parameters(int port) const override;
+  void Describe(lacuna::Properties& properties) const override;
   std::vector<vtkDataObject*> GetOrigins(const lacuna::Ports& ports) const override;
 
 private:

@@ -3,7 +3,6 @@
 
 #include "lacunaFieldData.h"
 #include "lacunaGateSignal.h"
-#include "lacunaParameterText.h"
 #include "lacunaPoseJudge.h"
 #include "lacunaPoseMatching.h"
 #include "lacunaSliceMotion.h"
@@ -32,6 +31,7 @@
 
 namespace
 {
+constexpr std::array<const char*, 2> KeyNames{ "Timestamp", "FrameNumber" };
 constexpr double NotANumber = std::numeric_limits<double>::quiet_NaN();
 
 // One number for each tuple; NaN for texts that are none.
@@ -182,10 +182,6 @@ void vtkLacunaGateSlices::Make(const lacuna::Ports& ports, lacuna::AlgorithmExec
   {
     lacuna::TrackedSlices::GetSliceNumber(slices, k, count); // throws when there is none
   }
-  if (!(this->SpeedLimit >= 0))
-  {
-    throw std::runtime_error("SpeedLimit must be positive, or 0 for no limit");
-  }
   const bool hasGate = table || slices->GetFieldData()->HasArray(this->GateColumn.c_str());
   if (!hasGate && !(this->SpeedLimit > 0))
   {
@@ -239,14 +235,6 @@ void vtkLacunaGateSlices::Make(const lacuna::Ports& ports, lacuna::AlgorithmExec
 std::vector<double> vtkLacunaGateSlices::GetGates(
   vtkImageData* slices, vtkTable* table, vtkIdType count)
 {
-  if (this->GateType != Value && !(this->Period > 0 && std::isfinite(this->Period)))
-  {
-    throw std::runtime_error("Period must be above 0");
-  }
-  if (!(this->MaximumTimeGap >= 0))
-  {
-    throw std::runtime_error("MaximumTimeGap must be positive, or 0 for no limit");
-  }
   if (!table)
   {
     if (this->GateType == Trigger)
@@ -273,8 +261,6 @@ void vtkLacunaGateSlices::WarnOfEmptyKeys(const std::vector<double>& keys)
 std::vector<double> vtkLacunaGateSlices::GetGatesByTime(
   vtkImageData* slices, vtkTable* table, vtkIdType count)
 {
-  constexpr std::array<lacuna::GateKind, 3> kinds{ lacuna::GateKind::Value, lacuna::GateKind::Phase,
-    lacuna::GateKind::Trigger };
   const std::vector<double> times = GetField(slices, lacuna::TrackedSlices::TimestampName, count);
   std::vector<double> rows = GetKeyColumnOf(table, this->KeyColumn, { "Timestamp", "Time" });
   this->WarnOfEmptyKeys(rows);
@@ -282,7 +268,7 @@ std::vector<double> vtkLacunaGateSlices::GetGatesByTime(
   {
     row += this->TimeOffset;
   }
-  const lacuna::GateSignal signal(kinds[this->GateType], rows,
+  const lacuna::GateSignal signal(static_cast<lacuna::GateKind>(this->GateType), rows,
     this->GateType == Trigger ? rows : GetColumn(table, this->GateColumn), this->Period,
     this->MaximumTimeGap);
   std::vector<double> gates;
@@ -391,26 +377,16 @@ std::vector<double> vtkLacunaGateSlices::GetSpeeds(
 }
 
 //------------------------------------------------------------------------------
-std::string vtkLacunaGateSlices::Parameters(int) const
+void vtkLacunaGateSlices::Describe(lacuna::Properties& properties) const
 {
-  constexpr std::array<const char*, 3> types{ "Value", "Phase", "Trigger" };
-  constexpr std::array<const char*, 2> keys{ "Timestamp", "FrameNumber" };
-  return lacuna::ParameterText()
-    .Add("GateType", types[this->GateType])
-    .Add("GateRange", this->GateRange)
-    .Add("Period", this->Period)
+  using lacuna::ValueRange;
+  properties.Add("GateType", this->GateType, lacuna::GateKindNames)
+    .Add("GateRange", this->GateRange, ValueRange::Any())
+    .Add("Period", this->Period, ValueRange::Above(0))
     .Add("GateColumn", this->GateColumn)
-    .Add("MatchBy", keys[this->MatchBy])
+    .Add("MatchBy", this->MatchBy, KeyNames)
     .Add("KeyColumn", this->KeyColumn)
-    .Add("TimeOffset", this->TimeOffset)
-    .Add("MaximumTimeGap", this->MaximumTimeGap)
-    .Add("SpeedLimit", this->SpeedLimit)
-    .Get();
-}
-
-//------------------------------------------------------------------------------
-void vtkLacunaGateSlices::PrintSelf(ostream& os, vtkIndent indent)
-{
-  this->Superclass::PrintSelf(os, indent);
-  os << indent << "Parameters: " << this->Parameters(0) << "\n";
+    .Add("TimeOffset", this->TimeOffset, ValueRange::Any("s"))
+    .Add("MaximumTimeGap", this->MaximumTimeGap, ValueRange::AtLeast(0, "s"))
+    .Add("SpeedLimit", this->SpeedLimit, ValueRange::AtLeast(0, "mm/s"));
 }

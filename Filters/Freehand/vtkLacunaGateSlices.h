@@ -49,7 +49,6 @@ class VTKLACUNAFILTERSFREEHAND_EXPORT vtkLacunaGateSlices
 public:
   static vtkLacunaGateSlices* New();
   vtkTypeMacro(vtkLacunaGateSlices, vtkImageAlgorithm);
-  void PrintSelf(ostream& os, vtkIndent indent) override;
 
   enum GateTypes
   {
@@ -67,7 +66,7 @@ public:
   /// What the gate values are. Value: a number that goes up and down. Phase: a number that grows by
   /// Period in each cycle. Trigger: the rows of the table are the instants at which cycles begin,
   /// and the gate value is the phase since, 0 to Period. Default: Value.
-  vtkSetClampMacro(GateType, int, Value, Trigger);
+  vtkSetMacro(GateType, int);
   vtkGetMacro(GateType, int);
   void SetGateTypeToValue() { this->SetGateType(Value); }
   void SetGateTypeToPhase() { this->SetGateType(Phase); }
@@ -96,7 +95,7 @@ public:
   ///@{
   /// What says which row belongs to which slice: times, between which values are interpolated, or
   /// the numbers of frames, each of which has a row of its own. Default: Timestamp.
-  vtkSetClampMacro(MatchBy, int, Timestamp, FrameNumber);
+  vtkSetMacro(MatchBy, int);
   vtkGetMacro(MatchBy, int);
   void SetMatchByToTimestamp() { this->SetMatchBy(Timestamp); }
   void SetMatchByToFrameNumber() { this->SetMatchBy(FrameNumber); }
@@ -140,7 +139,7 @@ protected:
   int FillInputPortInformation(int port, vtkInformation* info) override;
   void Announce(const lacuna::Ports& ports) override;
   void Make(const lacuna::Ports& ports, lacuna::AlgorithmExecution& execution) override;
-  std::string Parameters(int port) const override;
+  void Describe(lacuna::Properties& properties) const override;
 
 private:
   vtkLacunaGateSlices(const vtkLacunaGateSlices&) = delete;

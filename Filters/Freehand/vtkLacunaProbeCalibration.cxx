@@ -21,7 +21,7 @@
 #include "vtkTable.h"
 
 #include <algorithm>
-#include <cmath>
+#include <array>
 #include <cstdio>
 #include <stdexcept>
 #include <string>
@@ -29,6 +29,8 @@
 
 namespace
 {
+constexpr std::array<const char*, 4> MethodNames{ "ThreeWires", "SingleWall", "PointTarget",
+  "StylusPivot" };
 constexpr int SmallestPicture = 16; // pixels
 
 using Picks = std::vector<lacuna::SlicePick>;
@@ -450,29 +452,21 @@ void vtkLacunaProbeCalibration::WriteFile(const lacuna::CalibrationReport& repor
 }
 
 //------------------------------------------------------------------------------
-std::string vtkLacunaProbeCalibration::Parameters(int) const
+void vtkLacunaProbeCalibration::Describe(lacuna::Properties& properties) const
 {
-  return lacuna::ParameterText()
-    .Add("Method", this->Method)
-    .Add("PixelSpacing", this->PixelSpacing)
-    .Add("RowSpacing", this->RowSpacing)
+  using lacuna::ValueRange;
+  properties.Add("Method", this->Method, MethodNames)
+    .Add("PixelSpacing", this->PixelSpacing, ValueRange::AtLeast(0, "mm"))
+    .Add("RowSpacing", this->RowSpacing, ValueRange::Above(0, "mm").OrZero("as PixelSpacing"))
     .Add("EstimateScale", this->EstimateScale)
-    .Add("OutlierLimit", this->OutlierLimit)
+    .Add("OutlierLimit", this->OutlierLimit, lacuna::ProbeCalibrationOptions::OutlierLimitRange)
     .Add("WireRanges", this->WireRanges)
-    .Add("FindSpots", this->FindSpots)
-    .Get();
+    .Add("FindSpots", this->FindSpots);
 }
 
 //------------------------------------------------------------------------------
 void vtkLacunaProbeCalibration::PrintSelf(ostream& os, vtkIndent indent)
 {
-  this->Superclass::PrintSelf(os, indent);
-  os << indent << "Method: " << this->Method << "\n";
-  os << indent << "PixelSpacing: " << this->PixelSpacing << "\n";
-  os << indent << "RowSpacing: " << this->RowSpacing << "\n";
-  os << indent << "EstimateScale: " << this->EstimateScale << "\n";
-  os << indent << "OutlierLimit: " << this->OutlierLimit << "\n";
-  os << indent << "WireRanges: " << this->WireRanges << "\n";
-  os << indent << "FindSpots: " << this->FindSpots << "\n";
+  this->vtkLacunaAlgorithm::PrintSelf(os, indent);
   os << indent << "OutputFileName: " << this->OutputFileName << "\n";
 }

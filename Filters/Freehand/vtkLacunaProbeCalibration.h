@@ -84,7 +84,7 @@ public:
 
   ///@{
   /// What was scanned. Default: ThreeWires.
-  vtkSetClampMacro(Method, int, ThreeWires, StylusPivot);
+  vtkSetMacro(Method, int);
   vtkGetMacro(Method, int);
   void SetMethodToThreeWires() { this->SetMethod(ThreeWires); }
   void SetMethodToSingleWall() { this->SetMethod(SingleWall); }
@@ -157,7 +157,7 @@ protected:
   int FillOutputPortInformation(int port, vtkInformation* info) override;
   void Announce(const lacuna::Ports& ports) override;
   void Make(const lacuna::Ports& ports, lacuna::AlgorithmExecution& execution) override;
-  std::string Parameters(int port) const override;
+  void Describe(lacuna::Properties& properties) const override;
 
 private:
   // Given or found; what there is to say of them is added to advice. Throws.

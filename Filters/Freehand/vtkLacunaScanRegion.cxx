@@ -347,16 +347,6 @@ int vtkLacunaScanRegion::FillOutputPortInformation(int port, vtkInformation* inf
 //------------------------------------------------------------------------------
 void vtkLacunaScanRegion::Make(const lacuna::Ports& ports, lacuna::AlgorithmExecution& execution)
 {
-  if (!(this->PixelAspect > 0) || !std::isfinite(this->PixelAspect))
-  {
-    throw std::runtime_error("PixelAspect is " + lacuna::FormatNumber(this->PixelAspect) +
-      "; height by width of a pixel is above 0");
-  }
-  if (!(this->TickLength >= 0) || !std::isfinite(this->TickLength))
-  {
-    throw std::runtime_error("TickLength is " + lacuna::FormatNumber(this->TickLength) +
-      "; mm from tick to tick are above 0, or 0 when they are not known");
-  }
   auto* image = ports.GetInput<vtkImageData>();
   if (image->GetNumberOfPoints() == 0)
   {
@@ -411,18 +401,9 @@ void vtkLacunaScanRegion::Make(const lacuna::Ports& ports, lacuna::AlgorithmExec
 }
 
 //------------------------------------------------------------------------------
-std::string vtkLacunaScanRegion::Parameters(int) const
+void vtkLacunaScanRegion::Describe(lacuna::Properties& properties) const
 {
-  return lacuna::ParameterText()
-    .Add("TickLength", this->TickLength)
-    .Add("PixelAspect", this->PixelAspect)
-    .Get();
-}
-
-//------------------------------------------------------------------------------
-void vtkLacunaScanRegion::PrintSelf(ostream& os, vtkIndent indent)
-{
-  this->Superclass::PrintSelf(os, indent);
-  os << indent << "TickLength: " << this->TickLength << "\n";
-  os << indent << "PixelAspect: " << this->PixelAspect << "\n";
+  using lacuna::ValueRange;
+  properties.Add("TickLength", this->TickLength, ValueRange::Above(0, "mm").OrZero("not known"))
+    .Add("PixelAspect", this->PixelAspect, ValueRange::Above(0));
 }

@@ -44,7 +44,6 @@ class VTKLACUNAFILTERSFREEHAND_EXPORT vtkLacunaScanRegion
 public:
   static vtkLacunaScanRegion* New();
   vtkTypeMacro(vtkLacunaScanRegion, vtkTableAlgorithm);
-  void PrintSelf(ostream& os, vtkIndent indent) override;
 
   ///@{
   /// mm from tick to tick of the ruler, of the finest ticks; 0: not known. Default: 0.
@@ -66,7 +65,7 @@ protected:
   int FillInputPortInformation(int port, vtkInformation* info) override;
   int FillOutputPortInformation(int port, vtkInformation* info) override;
   void Make(const lacuna::Ports& ports, lacuna::AlgorithmExecution& execution) override;
-  std::string Parameters(int port) const override;
+  void Describe(lacuna::Properties& properties) const override;
 
 private:
   vtkLacunaScanRegion(const vtkLacunaScanRegion&) = delete;

@@ -17,6 +17,12 @@
 
 using SDDP = vtkStreamingDemandDrivenPipeline;
 
+namespace
+{
+constexpr std::array<const char*, 3> BadPoseRuleNames{ "Refuse", "LeaveOut", "KeepOutliers" };
+constexpr std::array<const char*, 3> GapMethodNames{ "Automatic", "Given", "Unlimited" };
+}
+
 //------------------------------------------------------------------------------
 int vtkLacunaSliceAlgorithm::ProcessRequest(
   vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
@@ -59,6 +65,32 @@ void vtkLacunaSliceAlgorithm::Ask(const lacuna::Ports& ports)
       this->AskForWhole(info);
     }
   }
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaSliceAlgorithm::DescribeGapMethod(lacuna::Properties& properties) const
+{
+  properties.Add("GapMethod", this->GapMethod, GapMethodNames);
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaSliceAlgorithm::DescribeClip(lacuna::Properties& properties) const
+{
+  properties.Add(
+    "ClipRectangle", this->ClipRectangle, lacuna::ValueRange::AtLeast(1, "pixels").OrZero("all"));
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaSliceAlgorithm::DescribeSlices(lacuna::Properties& properties) const
+{
+  using lacuna::ValueRange;
+  properties.Add("FanOrigin", this->FanOrigin, ValueRange::Any("pixels"))
+    .Add("FanAngles", this->FanAngles, ValueRange::Any("degrees"))
+    .Add("FanRadii", this->FanRadii, ValueRange::Above(0, "mm").OrZero("no fan"))
+    .Add("UseImageInvalid", this->UseImageInvalid)
+    .Add("UseTooFast", this->UseTooFast)
+    .Add("UseGatedOut", this->UseGatedOut)
+    .Add("BadPoses", this->BadPoses, BadPoseRuleNames);
 }
 
 //------------------------------------------------------------------------------

@@ -101,7 +101,7 @@ public:
   /// (lacunaPoseOutliers.h says which). Refuse: an error names the slice. LeaveOut: a warning names
   /// the slices, the rest is used. KeepOutliers: outliers are taken, unusable poses are refused.
   /// Default: Refuse.
-  vtkSetClampMacro(BadPoses, int, Refuse, KeepOutliers);
+  vtkSetMacro(BadPoses, int);
   vtkGetMacro(BadPoses, int);
   void SetBadPosesToRefuse() { this->SetBadPoses(Refuse); }
   void SetBadPosesToLeaveOut() { this->SetBadPoses(LeaveOut); }
@@ -120,7 +120,7 @@ public:
   /// where a sweep ends and another one begins, which the poses and times of the slices tell
   /// (lacunaSweepEnds.h); a largest gap that is given counts, too. Given: the largest gap that is
   /// given, alone; 0 is no limit. Unlimited: nowhere. Default: Automatic.
-  vtkSetClampMacro(GapMethod, int, AutomaticGap, UnlimitedGap);
+  vtkSetMacro(GapMethod, int);
   vtkGetMacro(GapMethod, int);
   void SetGapMethodToAutomatic() { this->SetGapMethod(AutomaticGap); }
   void SetGapMethodToGiven() { this->SetGapMethod(GivenGap); }
@@ -140,6 +140,11 @@ protected:
   ~vtkLacunaSliceAlgorithm() override = default;
 
   void Ask(const lacuna::Ports& ports) override;
+
+  /// List properties of this class.
+  void DescribeGapMethod(lacuna::Properties& properties) const;
+  void DescribeClip(lacuna::Properties& properties) const;
+  void DescribeSlices(lacuna::Properties& properties) const; ///< their fan, and which are taken
 
   /// Whether slices that are too many for the memory are taken from their stream; else what is made
   /// of a preview is a preview, and a warning says so. Default: no.

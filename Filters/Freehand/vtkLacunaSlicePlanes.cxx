@@ -3,8 +3,6 @@
 
 #include "lacunaFieldData.h"
 #include "lacunaItemList.h"
-#include "lacunaParameterText.h"
-#include "lacunaPropertyRange.h"
 #include "lacunaSliceImages.h"
 #include "lacunaSlicePlaneBuilder.h"
 #include "lacunaTrackedSlices.h"
@@ -20,7 +18,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <sstream>
 #include <stdexcept>
 #include <vector>
 
@@ -28,6 +25,11 @@ using SDDP = vtkStreamingDemandDrivenPipeline;
 
 namespace
 {
+constexpr std::array<const char*, 3> ColoringNames{ "Intensity", "Speed", "RegistrationError" };
+constexpr std::array<const char*, 3> InvalidSliceChoiceNames{ "LeaveOut", "Outline", "Show" };
+// Those of vtkLacunaSliceAlgorithm::BadPoseRules, but for Refuse.
+constexpr std::array<const char*, 3> BadPoseRuleNames{ "", "LeaveOut", "KeepOutliers" };
+
 // Slices k of the stack that a piece of the output has; last < first: none.
 struct Slab
 {
@@ -121,8 +123,6 @@ void vtkLacunaSlicePlanes::Make(const lacuna::Ports& ports, lacuna::AlgorithmExe
   {
     return;
   }
-  lacuna::RequireAtLeast(1, "Stride", this->Stride);
-  lacuna::RequireAtLeast(4, "MaximumNumberOfPoints", this->MaximumNumberOfPoints);
   lacuna::SlicePlaneBuilder::Options options;
   options.Stride = this->Stride;
   options.Accuracy = { this->TranslationAccuracy, this->AngularAccuracy };
@@ -185,20 +185,6 @@ void vtkLacunaSlicePlanes::WarnOfSpeed(const lacuna::SlicePlaneBuilder& builder)
 //------------------------------------------------------------------------------
 void vtkLacunaSlicePlanes::CheckRequest(const lacuna::SlicePlaneBuilder& builder)
 {
-  for (const double accuracy : { this->TranslationAccuracy, this->AngularAccuracy })
-  {
-    if (!(accuracy >= 0) || !std::isfinite(accuracy))
-    {
-      std::ostringstream message;
-      message << "TranslationAccuracy and AngularAccuracy are " << this->TranslationAccuracy
-              << " mm and " << this->AngularAccuracy << " degrees; they must be 0 or more";
-      throw std::runtime_error(message.str());
-    }
-  }
-  if (!(this->SpeedLimit >= 0))
-  {
-    throw std::runtime_error("SpeedLimit must be positive, or 0 for no limit");
-  }
   if (builder.HasBadCalibration())
   {
     const std::string text = std::string("field data array '") +
@@ -225,27 +211,16 @@ void vtkLacunaSlicePlanes::CheckRequest(const lacuna::SlicePlaneBuilder& builder
 }
 
 //------------------------------------------------------------------------------
-std::string vtkLacunaSlicePlanes::Parameters(int) const
+void vtkLacunaSlicePlanes::Describe(lacuna::Properties& properties) const
 {
-  constexpr std::array<const char*, 3> colorings{ "Intensity", "Speed", "RegistrationError" };
-  constexpr std::array<const char*, 3> choices{ "LeaveOut", "Outline", "Show" };
-  return lacuna::ParameterText()
-    .Add("Stride", this->Stride)
-    .Add("ColorBy", colorings[this->ColorBy])
-    .Add("TranslationAccuracy", this->TranslationAccuracy)
-    .Add("AngularAccuracy", this->AngularAccuracy)
-    .Add("SpeedLimit", this->SpeedLimit)
+  using lacuna::ValueRange;
+  properties.Add("Stride", this->Stride, ValueRange::AtLeast(1))
+    .Add("ColorBy", this->ColorBy, ColoringNames)
+    .Add("TranslationAccuracy", this->TranslationAccuracy, ValueRange::AtLeast(0, "mm"))
+    .Add("AngularAccuracy", this->AngularAccuracy, ValueRange::AtLeast(0, "degrees"))
+    .Add("SpeedLimit", this->SpeedLimit, ValueRange::AtLeast(0, "mm/s"))
     .Add("OutlineOnly", this->OutlineOnly)
-    .Add("InvalidSlices", choices[this->InvalidSlices])
-    .Add(
-      "BadPoses", this->BadPoses == vtkLacunaSliceAlgorithm::LeaveOut ? "LeaveOut" : "KeepOutliers")
-    .Add("MaximumNumberOfPoints", this->MaximumNumberOfPoints)
-    .Get();
-}
-
-//------------------------------------------------------------------------------
-void vtkLacunaSlicePlanes::PrintSelf(ostream& os, vtkIndent indent)
-{
-  this->Superclass::PrintSelf(os, indent);
-  os << indent << "Parameters: " << this->Parameters(0) << "\n";
+    .Add("InvalidSlices", this->InvalidSlices, InvalidSliceChoiceNames)
+    .Add("BadPoses", this->BadPoses, BadPoseRuleNames)
+    .Add("MaximumNumberOfPoints", this->MaximumNumberOfPoints, ValueRange::AtLeast(4));
 }

@@ -56,7 +56,6 @@ class VTKLACUNAFILTERSFREEHAND_EXPORT vtkLacunaSlicePlanes
 public:
   static vtkLacunaSlicePlanes* New();
   vtkTypeMacro(vtkLacunaSlicePlanes, vtkPolyDataAlgorithm);
-  void PrintSelf(ostream& os, vtkIndent indent) override;
 
   enum Colorings
   {
@@ -80,7 +79,7 @@ public:
   ///@{
   /// What the slices are coloured by: Intensity, Speed (mm/s) or RegistrationError (mm).
   /// Default: Intensity.
-  vtkSetClampMacro(ColorBy, int, Intensity, RegistrationError);
+  vtkSetMacro(ColorBy, int);
   vtkGetMacro(ColorBy, int);
   ///@}
 
@@ -111,7 +110,7 @@ public:
   /// What becomes of slices whose SliceStatus is not 0: LeaveOut, Outline (with values that are not
   /// a number, so that they take the NaN colour) or Show (as the others). Slices without a pose are
   /// always left out. Default: LeaveOut.
-  vtkSetClampMacro(InvalidSlices, int, LeaveOut, Show);
+  vtkSetMacro(InvalidSlices, int);
   vtkGetMacro(InvalidSlices, int);
   ///@}
 
@@ -120,8 +119,7 @@ public:
   /// Of vtkLacunaSliceAlgorithm::BadPoseRules, LeaveOut: a warning names them, they are not shown, and the speed of the next one is taken
   /// from the slice before them. KeepOutliers: only poses that cannot be drawn (not finite,
   /// singular, a corner beyond 1e38 mm) are left out. Default: LeaveOut.
-  vtkSetClampMacro(
-    BadPoses, int, vtkLacunaSliceAlgorithm::LeaveOut, vtkLacunaSliceAlgorithm::KeepOutliers);
+  vtkSetMacro(BadPoses, int);
   vtkGetMacro(BadPoses, int);
   ///@}
 
@@ -138,7 +136,7 @@ protected:
   int FillInputPortInformation(int port, vtkInformation* info) override;
   void Ask(const lacuna::Ports& ports) override;
   void Make(const lacuna::Ports& ports, lacuna::AlgorithmExecution& execution) override;
-  std::string Parameters(int port) const override;
+  void Describe(lacuna::Properties& properties) const override;
 
 private:
   vtkLacunaSlicePlanes(const vtkLacunaSlicePlanes&) = delete;

@@ -5,7 +5,6 @@
 #include "lacunaDepthMap.h"
 #include "lacunaFieldData.h"
 #include "lacunaMemory.h"
-#include "lacunaParameterText.h"
 #include "lacunaProposedLevel.h"
 #include "lacunaSliceFingerprint.h"
 #include "lacunaSliceImages.h"
@@ -66,14 +65,6 @@ public:
     if (!stack || stack->GetNumberOfPoints() == 0)
     {
       return;
-    }
-    if (std::isnan(self->IsoValue))
-    {
-      throw std::runtime_error("IsoValue is not a number; give a grey level of the slices");
-    }
-    if (!(self->MaximumGap >= 0))
-    {
-      throw std::runtime_error("MaximumGap must be positive, or 0 for no limit");
     }
     lacuna::SliceSelection selection =
       lacuna::SliceSelection::Make(self, ports.GetInputInformation());
@@ -185,8 +176,8 @@ public:
       known = 0;
       this->GreyLevels = {};
       caster = nullptr; // its memory goes before there is a new one
-      caster = std::make_unique<lacuna::SliceRayCaster>(plan.Plane, extent, self->IsoValue,
-        self->SolidSide == Above ? lacuna::SolidSide::Above : lacuna::SolidSide::Below);
+      caster = std::make_unique<lacuna::SliceRayCaster>(
+        plan.Plane, extent, self->IsoValue, static_cast<lacuna::SolidSide>(self->SolidSide));
     }
     execution.SetStage(0.1, 0.9);
     caster->AddSlices({ begin + known, plan.GetSlices().end() }, execution);
@@ -216,6 +207,7 @@ vtkLacunaSliceRayCaster::~vtkLacunaSliceRayCaster() = default;
 //------------------------------------------------------------------------------
 void vtkLacunaSliceRayCaster::Announce(const lacuna::Ports& ports)
 {
+  this->CheckProperties();
   this->UpdateInput(ports);
   vtkInformation* info = ports.GetOutputInformation();
   const Plan plan(this, ports);
@@ -353,30 +345,21 @@ void vtkLacunaSliceRayCaster::WarnAbout(const Plan& plan, bool hasSurface, vtkIm
 }
 
 //------------------------------------------------------------------------------
-std::string vtkLacunaSliceRayCaster::Parameters(int) const
+void vtkLacunaSliceRayCaster::Describe(lacuna::Properties& properties) const
 {
-  constexpr std::array<const char*, 3> badPoses{ "Refuse", "LeaveOut", "KeepOutliers" };
-  constexpr std::array<const char*, 3> gapMethods{ "Automatic", "Given", "Unlimited" };
-  return lacuna::ParameterText()
-    .Add("IsoValue", this->IsoValue)
-    .Add("SolidSide", this->SolidSide == Above ? "Above" : "Below")
-    .Add("GapMethod", gapMethods[this->GapMethod])
-    .Add("MaximumGap", this->MaximumGap)
-    .Add("ViewDirection", this->ViewDirection)
-    .Add("ViewUp", this->ViewUp)
-    .Add("FocalPoint", this->FocalPoint)
-    .Add("PlaneOrigin", this->PlaneOrigin)
-    .Add("PixelSpacing", this->PixelSpacing)
-    .Add("ImageSize", this->ImageSize)
-    .Add("ClipRectangle", this->ClipRectangle)
-    .Add("FanOrigin", this->FanOrigin)
-    .Add("FanAngles", this->FanAngles)
-    .Add("FanRadii", this->FanRadii)
-    .Add("UseImageInvalid", this->UseImageInvalid)
-    .Add("UseTooFast", this->UseTooFast)
-    .Add("UseGatedOut", this->UseGatedOut)
-    .Add("BadPoses", badPoses[this->BadPoses])
-    .Get();
+  using lacuna::ValueRange;
+  properties.Add("IsoValue", this->IsoValue, ValueRange::Any("grey level"))
+    .Add("SolidSide", this->SolidSide, lacuna::SolidSideNames);
+  this->DescribeGapMethod(properties);
+  properties.Add("MaximumGap", this->MaximumGap, ValueRange::AtLeast(0, "mm"))
+    .Add("ViewDirection", this->ViewDirection, ValueRange::Any())
+    .Add("ViewUp", this->ViewUp, ValueRange::Any())
+    .Add("FocalPoint", this->FocalPoint, ValueRange::Any("mm"))
+    .Add("PlaneOrigin", this->PlaneOrigin, ValueRange::Any("mm"))
+    .Add("PixelSpacing", this->PixelSpacing, ValueRange::Above(0, "mm").OrZero("of the slices"))
+    .Add("ImageSize", this->ImageSize, ValueRange::AtLeast(1, "pixels").OrZero("all slices"));
+  this->DescribeClip(properties);
+  this->DescribeSlices(properties);
 }
 
 //------------------------------------------------------------------------------
@@ -389,7 +372,6 @@ double* vtkLacunaSliceRayCaster::GetProposedIsoRange()
 //------------------------------------------------------------------------------
 void vtkLacunaSliceRayCaster::PrintSelf(ostream& os, vtkIndent indent)
 {
-  this->Superclass::PrintSelf(os, indent);
-  os << indent << "Parameters: " << this->Parameters(0) << "\n"
-     << indent << "NumberOfCastSlices: " << this->NumberOfCastSlices << "\n";
+  this->vtkLacunaAlgorithm::PrintSelf(os, indent);
+  os << indent << "NumberOfCastSlices: " << this->NumberOfCastSlices << "\n";
 }

@@ -33,7 +33,7 @@
  * brought up to date already when information about the output is asked for.
  *
  * Errors: an array of the input is missing, no slice is left, a pose cannot be true (see BadPoses),
- * IsoValue or MaximumGap is not a number, MaximumGap is negative, the view is impossible (a zero
+ * a property is out of range, the view is impossible (a zero
  * ViewDirection or ViewUp, the two parallel, over 2^28 pixels).
  *
  * @sa lacunaSliceRayCaster.h, vtkLacunaBSplineIsoRayCaster, vtkLacunaDepthMapSurface
@@ -75,7 +75,7 @@ public:
 
   ///@{
   /// Which side of the iso-value is solid. Default: Above; Below for vessels filled with fluid.
-  vtkSetClampMacro(SolidSide, int, Above, Below);
+  vtkSetMacro(SolidSide, int);
   vtkGetMacro(SolidSide, int);
   ///@}
 
@@ -140,7 +140,7 @@ protected:
 
   void Announce(const lacuna::Ports& ports) override;
   void Make(const lacuna::Ports& ports, lacuna::AlgorithmExecution& execution) override;
-  std::string Parameters(int port) const override;
+  void Describe(lacuna::Properties& properties) const override;
 
 private:
   vtkLacunaSliceRayCaster(const vtkLacunaSliceRayCaster&) = delete;

@@ -4,7 +4,6 @@
 #include "lacunaArrays.h"
 #include "lacunaFieldData.h"
 #include "lacunaMemory.h"
-#include "lacunaParameterText.h"
 #include "lacunaSweptVolume.h"
 #include "lacunaSweptVolumePlan.h"
 #include "vtkCharArray.h"
@@ -20,11 +19,16 @@
 #include "vtkUnsignedIntArray.h"
 
 #include <algorithm>
+#include <array>
 #include <map>
 #include <set>
 
 namespace
 {
+constexpr std::array<const char*, 2> OutputFrameNames{ "Reference", "Principal" };
+constexpr std::array<const char*, 3> FanMaskNames{ "Given", "Automatic", "None" };
+constexpr std::array<const char*, 2> OutputScalarTypeNames{ "Input", "Float" };
+
 bool HasPoints(const int extent[6])
 {
   return extent[0] <= extent[1] && extent[2] <= extent[3] && extent[4] <= extent[5];
@@ -263,6 +267,7 @@ int vtkLacunaSweptVolume::FillInputPortInformation(int, vtkInformation* info)
 //------------------------------------------------------------------------------
 void vtkLacunaSweptVolume::Announce(const lacuna::Ports& ports)
 {
+  this->CheckProperties();
   this->UpdateInput(ports);
   vtkInformation* info = ports.GetOutputInformation();
   int extent[6] = { 0, -1, 0, -1, 0, -1 };
@@ -374,44 +379,23 @@ std::vector<vtkDataObject*> vtkLacunaSweptVolume::GetOrigins(const lacuna::Ports
 }
 
 //------------------------------------------------------------------------------
-std::string vtkLacunaSweptVolume::Parameters(int) const
+void vtkLacunaSweptVolume::Describe(lacuna::Properties& properties) const
 {
-  constexpr std::array<const char*, 2> frames{ "Reference", "Principal" };
-  constexpr std::array<const char*, 3> samplings{ "Footprint", "Bilinear", "Nearest" };
-  constexpr std::array<const char*, 2> interpolations{ "BetweenSlices", "NearestVoxel" };
-  constexpr std::array<const char*, 2> compoundings{ "Mean", "Maximum" };
-  constexpr std::array<const char*, 3> fanMasks{ "Given", "Automatic", "None" };
-  constexpr std::array<const char*, 3> badPoses{ "Refuse", "LeaveOut", "KeepOutliers" };
-  constexpr std::array<const char*, 3> gapMethods{ "Automatic", "Given", "Unlimited" };
-  constexpr std::array<const char*, 2> types{ "Input", "Float" };
-  return lacuna::ParameterText()
-    .Add("OutputSpacing", this->OutputSpacing)
-    .Add("OutputFrame", frames[this->OutputFrame])
-    .Add("OutputBounds", this->OutputBounds)
-    .Add("PixelSampling", samplings[this->PixelSampling])
-    .Add("FootprintScale", this->FootprintScale)
+  using lacuna::ValueRange;
+  properties.Add("OutputSpacing", this->OutputSpacing, lacuna::VolumeGridRequest::SpacingRange)
+    .Add("OutputFrame", this->OutputFrame, OutputFrameNames)
+    .Add("OutputBounds", this->OutputBounds, ValueRange::Any("mm"))
+    .Add("PixelSampling", this->PixelSampling, lacuna::PixelSamplingNames)
+    .Add("FootprintScale", this->FootprintScale, lacuna::SweptVolume::FootprintScaleRange)
     .Add("FootprintAcrossSlices", this->FootprintAcrossSlices)
-    .Add("Interpolation", interpolations[this->Interpolation])
-    .Add("Compounding", compoundings[this->Compounding])
-    .Add("GapMethod", gapMethods[this->GapMethod])
-    .Add("MaximumSliceGap", this->MaximumSliceGap)
-    .Add("ClipRectangle", this->ClipRectangle)
-    .Add("FanMask", fanMasks[this->FanMask])
-    .Add("FanOrigin", this->FanOrigin)
-    .Add("FanAngles", this->FanAngles)
-    .Add("FanRadii", this->FanRadii)
-    .Add("UseImageInvalid", this->UseImageInvalid)
-    .Add("UseTooFast", this->UseTooFast)
-    .Add("UseGatedOut", this->UseGatedOut)
-    .Add("BadPoses", badPoses[this->BadPoses])
-    .Add("OutputScalarType", types[this->OutputScalarType])
-    .Get();
-}
-
-//------------------------------------------------------------------------------
-void vtkLacunaSweptVolume::PrintSelf(ostream& os, vtkIndent indent)
-{
-  this->Superclass::PrintSelf(os, indent);
-  os << indent << "Parameters: " << this->Parameters(0) << "\n";
-  os << indent << "MemoryLimit: " << this->MemoryLimit << "\n";
+    .Add("Interpolation", this->Interpolation, lacuna::SweptVolume::MethodNames)
+    .Add("Compounding", this->Compounding, lacuna::CompoundingNames);
+  this->DescribeGapMethod(properties);
+  properties.Add(
+    "MaximumSliceGap", this->MaximumSliceGap, ValueRange::Above(0, "mm").OrZero("no limit"));
+  this->DescribeClip(properties);
+  properties.Add("FanMask", this->FanMask, FanMaskNames);
+  this->DescribeSlices(properties);
+  properties.Add("OutputScalarType", this->OutputScalarType, OutputScalarTypeNames)
+    .Add("MemoryLimit", this->MemoryLimit, ValueRange::AtLeast(1, "MiB").OrZero("no limit"));
 }

@@ -70,7 +70,6 @@ class VTKLACUNAFILTERSFREEHAND_EXPORT vtkLacunaSweptVolume : public vtkLacunaSli
 public:
   static vtkLacunaSweptVolume* New();
   vtkTypeMacro(vtkLacunaSweptVolume, vtkLacunaSliceAlgorithm);
-  void PrintSelf(ostream& os, vtkIndent indent) override;
 
   enum OutputFrames
   {
@@ -118,7 +117,7 @@ public:
   /// (columns, rows, normals; see lacunaPrincipalFrame.h), so that the volume is hardly larger than
   /// what was swept. The output then has a direction matrix, and still lies in the reference frame.
   /// Default: Reference.
-  vtkSetClampMacro(OutputFrame, int, Reference, Principal);
+  vtkSetMacro(OutputFrame, int);
   vtkGetMacro(OutputFrame, int);
   void SetOutputFrameToReference() { this->SetOutputFrame(Reference); }
   void SetOutputFrameToPrincipal() { this->SetOutputFrame(Principal); }
@@ -135,7 +134,7 @@ public:
   /// The grey level at the foot of a perpendicular: Footprint (the mean over the voxel's footprint
   /// in the slice, so that slices finer than the voxels do not alias), Bilinear or Nearest. Only
   /// for BetweenSlices. Default: Footprint.
-  vtkSetClampMacro(PixelSampling, int, Footprint, Nearest);
+  vtkSetMacro(PixelSampling, int);
   vtkGetMacro(PixelSampling, int);
   void SetPixelSamplingToFootprint() { this->SetPixelSampling(Footprint); }
   void SetPixelSamplingToBilinear() { this->SetPixelSampling(Bilinear); }
@@ -161,7 +160,7 @@ public:
   ///@{
   /// BetweenSlices, or NearestVoxel: each pixel of each slice goes to the voxel in which its centre
   /// lies, and nothing is interpolated. Default: BetweenSlices.
-  vtkSetClampMacro(Interpolation, int, BetweenSlices, NearestVoxel);
+  vtkSetMacro(Interpolation, int);
   vtkGetMacro(Interpolation, int);
   void SetInterpolationToBetweenSlices() { this->SetInterpolation(BetweenSlices); }
   void SetInterpolationToNearestVoxel() { this->SetInterpolation(NearestVoxel); }
@@ -169,7 +168,7 @@ public:
 
   ///@{
   /// What several samples of a voxel become: their Mean or their Maximum. Default: Mean.
-  vtkSetClampMacro(Compounding, int, Mean, Maximum);
+  vtkSetMacro(Compounding, int);
   vtkGetMacro(Compounding, int);
   void SetCompoundingToMean() { this->SetCompounding(Mean); }
   void SetCompoundingToMaximum() { this->SetCompounding(Maximum); }
@@ -187,7 +186,7 @@ public:
   /// FanOrigin, FanAngles and FanRadii, if its radii are not 0. Automatic: found in the pixels, for
   /// each input (lacunaFanDetection.h); an error says when that is not certain. NoFan: all of it.
   /// ClipRectangle applies in any case. Default: Given.
-  vtkSetClampMacro(FanMask, int, Given, NoFan);
+  vtkSetMacro(FanMask, int);
   vtkGetMacro(FanMask, int);
   void SetFanMaskToGiven() { this->SetFanMask(Given); }
   void SetFanMaskToAutomatic() { this->SetFanMask(Automatic); }
@@ -201,7 +200,7 @@ public:
 
   ///@{
   /// Type of Intensity: that of the input, or Float. Default: Input.
-  vtkSetClampMacro(OutputScalarType, int, Input, Float);
+  vtkSetMacro(OutputScalarType, int);
   vtkGetMacro(OutputScalarType, int);
   void SetOutputScalarTypeToInput() { this->SetOutputScalarType(Input); }
   void SetOutputScalarTypeToFloat() { this->SetOutputScalarType(Float); }
@@ -226,7 +225,7 @@ protected:
   int FillInputPortInformation(int port, vtkInformation* info) override;
   void Announce(const lacuna::Ports& ports) override;
   void Make(const lacuna::Ports& ports, lacuna::AlgorithmExecution& execution) override;
-  std::string Parameters(int port) const override;
+  void Describe(lacuna::Properties& properties) const override;
   std::vector<vtkDataObject*> GetOrigins(const lacuna::Ports& ports) const override;
 
 private:

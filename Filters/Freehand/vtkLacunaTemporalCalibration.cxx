@@ -3,7 +3,6 @@
 
 #include "lacunaCalibrationPicks.h"
 #include "lacunaFieldData.h"
-#include "lacunaParameterText.h"
 #include "lacunaTemporalCalibration.h"
 #include "lacunaTrackedSlices.h"
 #include "vtkDataArray.h"
@@ -98,14 +97,7 @@ void vtkLacunaTemporalCalibration::Make(
 }
 
 //------------------------------------------------------------------------------
-std::string vtkLacunaTemporalCalibration::Parameters(int) const
+void vtkLacunaTemporalCalibration::Describe(lacuna::Properties& properties) const
 {
-  return lacuna::ParameterText().Add("MaximumLag", this->MaximumLag).Get();
-}
-
-//------------------------------------------------------------------------------
-void vtkLacunaTemporalCalibration::PrintSelf(ostream& os, vtkIndent indent)
-{
-  this->Superclass::PrintSelf(os, indent);
-  os << indent << "MaximumLag: " << this->MaximumLag << "\n";
+  properties.Add("MaximumLag", this->MaximumLag, lacuna::TemporalCalibration::MaximumLagRange);
 }

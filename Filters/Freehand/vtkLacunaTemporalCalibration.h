@@ -33,10 +33,9 @@ class VTKLACUNAFILTERSFREEHAND_EXPORT vtkLacunaTemporalCalibration
 public:
   static vtkLacunaTemporalCalibration* New();
   vtkTypeMacro(vtkLacunaTemporalCalibration, vtkTableAlgorithm);
-  void PrintSelf(ostream& os, vtkIndent indent) override;
 
   ///@{
-  /// Lags up to this many s, either way, are tried; above 0, at most 2. Default: 0.5.
+  /// Lags up to this many s, either way, are tried, above 0 and at most 2. Default: 0.5.
   vtkSetMacro(MaximumLag, double);
   vtkGetMacro(MaximumLag, double);
   ///@}
@@ -47,7 +46,7 @@ protected:
 
   int FillInputPortInformation(int port, vtkInformation* info) override;
   void Make(const lacuna::Ports& ports, lacuna::AlgorithmExecution& execution) override;
-  std::string Parameters(int port) const override;
+  void Describe(lacuna::Properties& properties) const override;
 
 private:
   vtkLacunaTemporalCalibration(const vtkLacunaTemporalCalibration&) = delete;

@@ -3,7 +3,6 @@
 
 #include "lacunaArrays.h"
 #include "lacunaFieldData.h"
-#include "lacunaParameterText.h"
 #include "lacunaPoseColumnReader.h"
 #include "lacunaPoseTable.h"
 #include "lacunaTrackedSlices.h"
@@ -396,13 +395,7 @@ void vtkLacunaTrackerSelfTest::Make(const lacuna::Ports& ports, lacuna::Algorith
   {
     vtkWarningMacro(<< warning);
   }
-  lacuna::TrackerSelfTestOptions options;
-  options.SpeedLimit = this->SpeedLimit;
-  options.RevisitDistance = this->RevisitDistance;
-  options.RevisitAngle = this->RevisitAngle;
-  options.Accuracy = { this->TranslationAccuracy, this->AngularAccuracy };
-  options.RangeLimit = this->RangeLimit;
-  const Test found = Test::Solve(pairs.Pairs, options);
+  const Test found = Test::Solve(pairs.Pairs, this->GetOptions());
 
   auto* points = ports.GetOutput<vtkPolyData>();
   FillPoints(found, points);
@@ -442,26 +435,24 @@ void vtkLacunaTrackerSelfTest::Make(const lacuna::Ports& ports, lacuna::Algorith
 }
 
 //------------------------------------------------------------------------------
-std::string vtkLacunaTrackerSelfTest::Parameters(int) const
+lacuna::TrackerSelfTestOptions vtkLacunaTrackerSelfTest::GetOptions() const
 {
-  return lacuna::ParameterText()
-    .Add("FirstReceiver", this->FirstReceiver)
-    .Add("SecondReceiver", this->SecondReceiver)
-    .Add("PoseFormat", this->PoseFormat)
-    .Add("LengthUnit", this->LengthUnit)
-    .Add("Stations", this->Stations)
-    .Add("SpeedLimit", this->SpeedLimit)
-    .Add("RevisitDistance", this->RevisitDistance)
-    .Add("RevisitAngle", this->RevisitAngle)
-    .Add("TranslationAccuracy", this->TranslationAccuracy)
-    .Add("AngularAccuracy", this->AngularAccuracy)
-    .Add("RangeLimit", this->RangeLimit)
-    .Get();
+  lacuna::TrackerSelfTestOptions options;
+  options.SpeedLimit = this->SpeedLimit;
+  options.RevisitDistance = this->RevisitDistance;
+  options.RevisitAngle = this->RevisitAngle;
+  options.Accuracy = { this->TranslationAccuracy, this->AngularAccuracy };
+  options.RangeLimit = this->RangeLimit;
+  return options;
 }
 
 //------------------------------------------------------------------------------
-void vtkLacunaTrackerSelfTest::PrintSelf(ostream& os, vtkIndent indent)
+void vtkLacunaTrackerSelfTest::Describe(lacuna::Properties& properties) const
 {
-  this->Superclass::PrintSelf(os, indent);
-  os << indent << this->Parameters(0) << "\n";
+  properties.Add("FirstReceiver", this->FirstReceiver)
+    .Add("SecondReceiver", this->SecondReceiver)
+    .Add("PoseFormat", this->PoseFormat, lacuna::PoseFormatNames)
+    .Add("LengthUnit", this->LengthUnit, lacuna::LengthUnitNames)
+    .Add("Stations", this->Stations);
+  this->GetOptions().Describe(properties);
 }

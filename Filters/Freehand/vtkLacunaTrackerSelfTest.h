@@ -49,13 +49,17 @@
 
 #include <string>
 
+namespace lacuna
+{
+struct TrackerSelfTestOptions;
+}
+
 class VTKLACUNAFILTERSFREEHAND_EXPORT vtkLacunaTrackerSelfTest
   : public vtkLacunaAlgorithmOf(vtkPolyDataAlgorithm)
 {
 public:
   static vtkLacunaTrackerSelfTest* New();
   vtkTypeMacro(vtkLacunaTrackerSelfTest, vtkPolyDataAlgorithm);
-  void PrintSelf(ostream& os, vtkIndent indent) override;
 
   enum PoseFormats
   {
@@ -85,13 +89,13 @@ public:
   ///@{
   /// How rows of a table give poses, as in vtkLacunaAssembleTrackedSlices. Default: Euler, x y z
   /// azimuth elevation roll.
-  vtkSetClampMacro(PoseFormat, int, Matrix, Euler);
+  vtkSetMacro(PoseFormat, int);
   vtkGetMacro(PoseFormat, int);
   ///@}
 
   ///@{
   /// Of a table's positions; a FASTRAK sends inches unless told otherwise. Default: Millimetre.
-  vtkSetClampMacro(LengthUnit, int, Millimetre, Inch);
+  vtkSetMacro(LengthUnit, int);
   vtkGetMacro(LengthUnit, int);
   ///@}
 
@@ -136,11 +140,13 @@ protected:
   int FillInputPortInformation(int port, vtkInformation* info) override;
   int FillOutputPortInformation(int port, vtkInformation* info) override;
   void Make(const lacuna::Ports& ports, lacuna::AlgorithmExecution& execution) override;
-  std::string Parameters(int port) const override;
+  void Describe(lacuna::Properties& properties) const override;
 
 private:
   vtkLacunaTrackerSelfTest(const vtkLacunaTrackerSelfTest&) = delete;
   void operator=(const vtkLacunaTrackerSelfTest&) = delete;
+
+  lacuna::TrackerSelfTestOptions GetOptions() const;
 
   std::string FirstReceiver = "ProbeToTracker";
   std::string SecondReceiver;

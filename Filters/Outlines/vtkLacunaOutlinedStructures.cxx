@@ -599,26 +599,10 @@ vtkSmartPointer<vtkPolyData> vtkLacunaOutlinedStructures::MakeSurface(
 }
 
 //------------------------------------------------------------------------------
-void vtkLacunaOutlinedStructures::CheckProperties() const
-{
-  for (const auto& property :
-    { std::pair<const char*, double>{ "RegistrationError", this->RegistrationError },
-      { "Smoothing", this->Smoothing }, { "OutputSpacing", this->OutputSpacing } })
-  {
-    if (!(property.second >= 0) || !std::isfinite(property.second))
-    {
-      throw std::runtime_error(std::string(property.first) + " is " +
-        lacuna::FormatNumber(property.second) + "; it must be a finite number >= 0, in mm");
-    }
-  }
-}
-
-//------------------------------------------------------------------------------
 void vtkLacunaOutlinedStructures::Make(
   const lacuna::Ports& ports, lacuna::AlgorithmExecution& execution)
 {
   auto* input = ports.GetInput<vtkPolyData>();
-  this->CheckProperties();
   vtkNew<vtkStripper> joined; // pieces of lines, as cutters leave them
   if (!input->GetCellData()->HasArray("Structure"))
   {
@@ -677,20 +661,10 @@ void vtkLacunaOutlinedStructures::Make(
 }
 
 //------------------------------------------------------------------------------
-std::string vtkLacunaOutlinedStructures::Parameters(int) const
+void vtkLacunaOutlinedStructures::Describe(lacuna::Properties& properties) const
 {
-  return lacuna::ParameterText()
-    .Add("RegistrationError", this->RegistrationError)
-    .Add("Smoothing", this->Smoothing)
-    .Add("OutputSpacing", this->OutputSpacing)
-    .Get();
-}
-
-//------------------------------------------------------------------------------
-void vtkLacunaOutlinedStructures::PrintSelf(ostream& os, vtkIndent indent)
-{
-  this->Superclass::PrintSelf(os, indent);
-  os << indent << "RegistrationError: " << this->RegistrationError << "\n";
-  os << indent << "Smoothing: " << this->Smoothing << "\n";
-  os << indent << "OutputSpacing: " << this->OutputSpacing << "\n";
+  using lacuna::ValueRange;
+  properties.Add("RegistrationError", this->RegistrationError, ValueRange::AtLeast(0, "mm"))
+    .Add("Smoothing", this->Smoothing, ValueRange::Above(0, "mm").OrZero("estimated"))
+    .Add("OutputSpacing", this->OutputSpacing, ValueRange::Above(0, "mm").OrZero("automatic"));
 }

@@ -52,25 +52,24 @@ class VTKLACUNAFILTERSOUTLINES_EXPORT vtkLacunaOutlinedStructures
 public:
   static vtkLacunaOutlinedStructures* New();
   vtkTypeMacro(vtkLacunaOutlinedStructures, vtkPolyDataAlgorithm);
-  void PrintSelf(ostream& os, vtkIndent indent) override;
 
   struct Input; ///< outlines of a structure
 
   ///@{
-  /// Error of a slice's place, mm RMS of the three axes together, independent from slice to slice, 0 or more.
+  /// Error of a slice's place, mm RMS of the three axes together, independent from slice to slice.
   /// A tracker's: Slice Planes' RegistrationError. Default: 0.
   vtkSetMacro(RegistrationError, double);
   vtkGetMacro(RegistrationError, double);
   ///@}
 
   ///@{
-  /// Expected error of the drawn points, mm, 0 or more. Default 0: estimated from the outlines.
+  /// Expected error of the drawn points, mm. Default 0: estimated from the outlines.
   vtkSetMacro(Smoothing, double);
   vtkGetMacro(Smoothing, double);
   ///@}
 
   ///@{
-  /// Edges of the triangles, mm, 0 or more. Default 0: a fortieth of a structure's extent.
+  /// Edges of the triangles, mm. Default 0: a fortieth of a structure's extent.
   vtkSetMacro(OutputSpacing, double);
   vtkGetMacro(OutputSpacing, double);
   ///@}
@@ -81,7 +80,7 @@ protected:
 
   int FillOutputPortInformation(int port, vtkInformation* info) override;
   void Make(const lacuna::Ports& ports, lacuna::AlgorithmExecution& execution) override;
-  std::string Parameters(int port) const override;
+  void Describe(lacuna::Properties& properties) const override;
 
 private:
   vtkLacunaOutlinedStructures(const vtkLacunaOutlinedStructures&) = delete;
@@ -89,7 +88,6 @@ private:
 
   struct Kept;
   struct Listener;
-  void CheckProperties() const;
   /// What an earlier execution made of the same outlines, or made now.
   std::shared_ptr<const Kept> Make(
     const Input& structure, lacuna::AlgorithmExecution& execution) const;

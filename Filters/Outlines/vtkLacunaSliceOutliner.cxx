@@ -582,18 +582,13 @@ std::string vtkLacunaSliceOutliner::Parameters(int port) const
 }
 
 //------------------------------------------------------------------------------
-void vtkLacunaSliceOutliner::PrintSelf(ostream& os, vtkIndent indent)
+void vtkLacunaSliceOutliner::Describe(lacuna::Properties& properties) const
 {
-  this->Superclass::PrintSelf(os, indent);
-  os << indent << "OutlinePoints: " << this->Points.size() << "\n";
-  os << indent << "StructureNames: " << this->Names.size() << "\n";
-  os << indent << "StructureColors: " << this->Colors.size() << "\n";
-  os << indent << "Smooth: " << this->Smooth << "\n";
-  os << indent << "Slice: " << this->Slice << "\n";
-  os << indent << "VolumeGrid:";
-  for (const double v : this->VolumeGrid)
-  {
-    os << " " << v;
-  }
-  os << "\n";
+  // of lists, how long they are
+  properties.Add("OutlinePoints", this->Points.size())
+    .Add("StructureNames", this->Names.size())
+    .Add("StructureColors", this->Colors.size())
+    .Add("Smooth", this->Smooth)
+    .Add("Slice", this->Slice)
+    .Add("VolumeGrid", this->VolumeGrid, lacuna::ValueRange::Any("mm"));
 }

@@ -52,7 +52,6 @@ class VTKLACUNAFILTERSOUTLINES_EXPORT vtkLacunaSliceOutliner
 public:
   static vtkLacunaSliceOutliner* New();
   vtkTypeMacro(vtkLacunaSliceOutliner, vtkPolyDataAlgorithm);
-  void PrintSelf(ostream& os, vtkIndent indent) override;
 
   ///@{
   /// Points of outlines, those of one outline in order and together. Each has the number of its structure
@@ -110,6 +109,7 @@ protected:
   int FillOutputPortInformation(int port, vtkInformation* info) override;
   void Announce(const lacuna::Ports& ports) override;
   void Make(const lacuna::Ports& ports, lacuna::AlgorithmExecution& execution) override;
+  void Describe(lacuna::Properties& properties) const override;
   std::string Parameters(int port) const override;
 
 private:

@@ -36,6 +36,7 @@
 #include "vtkStringArray.h"
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <map>
 #include <new>
@@ -44,6 +45,8 @@
 namespace
 {
 constexpr const char* ScalarsName = "HounsfieldUnits";
+constexpr std::array<const char*, 2> MissingSlicesNames{ "Error", "Interpolate" };
+constexpr std::array<const char*, 2> GantryTiltNames{ "Correct", "Refuse" };
 
 std::string Text(const char* s)
 {
@@ -212,6 +215,7 @@ void vtkLacunaCTSeriesReader::OpenSeries()
 //------------------------------------------------------------------------------
 void vtkLacunaCTSeriesReader::FindVolume(const lacuna::CTSeriesList& list)
 {
+  this->CheckProperties();
   Content& found = *this->Found;
   const std::string requested = Text(this->SeriesUID);
   const std::string file = this->FileName;
@@ -233,8 +237,8 @@ void vtkLacunaCTSeriesReader::FindVolume(const lacuna::CTSeriesList& list)
   found.Type = lacuna::GetHounsfieldType(frames, this->PaddingValue);
 
   lacuna::CTGeometryOptions options;
-  options.InterpolateMissing = this->MissingSlices == MISSING_SLICES_INTERPOLATE;
-  options.CorrectTilt = this->GantryTilt == GANTRY_TILT_CORRECT;
+  options.InterpolateMissing = this->MissingSlices == Interpolate;
+  options.CorrectTilt = this->GantryTilt == Correct;
   options.PositionTolerance = this->PositionTolerance;
   // each change of a property comes here, and a series may be there twice as a whole
   const auto known = std::exchange(found.SameImages, {});
@@ -290,21 +294,29 @@ void vtkLacunaCTSeriesReader::AnnounceGrid(vtkInformation* info) const
 }
 
 //------------------------------------------------------------------------------
+void vtkLacunaCTSeriesReader::Describe(lacuna::Properties& properties) const
+{
+  using lacuna::ValueRange;
+  properties.Add("MissingSlices", this->MissingSlices, MissingSlicesNames)
+    .Add("GantryTilt", this->GantryTilt, GantryTiltNames)
+    .Add("Acquisition", this->Acquisition, ValueRange::AtLeast(-1))
+    .Add("PositionTolerance", this->PositionTolerance, lacuna::CTGeometryOptions::ToleranceRange)
+    .Add("PaddingValue", this->PaddingValue, ValueRange::Any("HU"))
+    .Add("KeepPatientIdentity", this->KeepPatientIdentity);
+}
+
+//------------------------------------------------------------------------------
 std::string vtkLacunaCTSeriesReader::Parameters(int) const
 {
   const lacuna::CTGeometry& geometry = this->Found->Geometry;
-  return lacuna::ParameterText()
+  lacuna::Properties properties;
+  properties
     // tells which scan it was to one who has it, and nothing to others
     .Add("Series", "fnv1a:" + lacuna::HashText(geometry.Slices[0].Frame.Header->SeriesUid))
-    .Add("Images", geometry.Slices.size())
-    .Add("MissingSlices", this->MissingSlices == MISSING_SLICES_ERROR ? "Error" : "Interpolate")
-    .Add("GantryTilt", this->GantryTilt == GANTRY_TILT_CORRECT ? "Correct" : "Refuse")
-    .Add("Acquisition", this->Acquisition)
-    .Add("PositionTolerance", this->PositionTolerance)
-    .Add("PaddingValue", this->PaddingValue)
-    .Add("Interpolated", geometry.Interpolated.size())
-    .Add("Tilt", geometry.TiltDegrees)
-    .Get();
+    .Add("Images", geometry.Slices.size());
+  this->Describe(properties);
+  properties.Add("Interpolated", geometry.Interpolated.size()).Add("Tilt", geometry.TiltDegrees);
+  return properties.GetText();
 }
 
 //------------------------------------------------------------------------------
@@ -388,13 +400,7 @@ void vtkLacunaCTSeriesReader::Make(
 //------------------------------------------------------------------------------
 void vtkLacunaCTSeriesReader::PrintSelf(ostream& os, vtkIndent indent)
 {
-  this->Superclass::PrintSelf(os, indent);
+  this->vtkLacunaAlgorithm::PrintSelf(os, indent);
   os << indent << "FileName: " << Text(this->FileName) << "\n";
   os << indent << "SeriesUID: " << Text(this->SeriesUID) << "\n";
-  os << indent << "MissingSlices: " << this->MissingSlices << "\n";
-  os << indent << "GantryTilt: " << this->GantryTilt << "\n";
-  os << indent << "Acquisition: " << this->Acquisition << "\n";
-  os << indent << "PositionTolerance: " << this->PositionTolerance << "\n";
-  os << indent << "PaddingValue: " << this->PaddingValue << "\n";
-  os << indent << "KeepPatientIdentity: " << (this->KeepPatientIdentity ? "on" : "off") << "\n";
 }

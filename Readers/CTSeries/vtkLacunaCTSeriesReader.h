@@ -61,14 +61,14 @@ public:
   /// What is done about slices that are missing or not equally spaced.
   enum MissingSlicesType
   {
-    MISSING_SLICES_ERROR = 0,
-    MISSING_SLICES_INTERPOLATE = 1
+    Error = 0,
+    Interpolate = 1
   };
   /// What is done about a tilted gantry.
   enum GantryTiltType
   {
-    GANTRY_TILT_CORRECT = 0,
-    GANTRY_TILT_REFUSE = 1
+    Correct = 0,
+    Refuse = 1
   };
 
   ///@{
@@ -85,21 +85,21 @@ public:
   ///@}
 
   ///@{
-  /// Default: MISSING_SLICES_ERROR.
-  vtkSetClampMacro(MissingSlices, int, MISSING_SLICES_ERROR, MISSING_SLICES_INTERPOLATE);
+  /// Default: Error.
+  vtkSetMacro(MissingSlices, int);
   vtkGetMacro(MissingSlices, int);
   ///@}
 
   ///@{
-  /// Default: GANTRY_TILT_CORRECT.
-  vtkSetClampMacro(GantryTilt, int, GANTRY_TILT_CORRECT, GANTRY_TILT_REFUSE);
+  /// Default: Correct.
+  vtkSetMacro(GantryTilt, int);
   vtkGetMacro(GantryTilt, int);
   ///@}
 
   ///@{
   /// Acquisition Number of the images to take where a series has several over one another; -1 (the
   /// default): all.
-  vtkSetClampMacro(Acquisition, int, -1, VTK_INT_MAX);
+  vtkSetMacro(Acquisition, int);
   vtkGetMacro(Acquisition, int);
   ///@}
 
@@ -142,6 +142,7 @@ protected:
 
   void Announce(const lacuna::Ports& ports) override;
   void Make(const lacuna::Ports& ports, lacuna::AlgorithmExecution& execution) override;
+  void Describe(lacuna::Properties& properties) const override;
   std::string Parameters(int port) const override;
 
 private:
@@ -156,8 +157,8 @@ private:
 
   char* FileName = nullptr;
   char* SeriesUID = nullptr;
-  int MissingSlices = MISSING_SLICES_ERROR;
-  int GantryTilt = GANTRY_TILT_CORRECT;
+  int MissingSlices = Error;
+  int GantryTilt = Correct;
   int Acquisition = -1;
   double PositionTolerance = 0.05;
   double PaddingValue = -1024;

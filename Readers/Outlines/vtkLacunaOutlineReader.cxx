@@ -170,6 +170,6 @@ std::string vtkLacunaOutlineReader::Parameters(int) const
 //------------------------------------------------------------------------------
 void vtkLacunaOutlineReader::PrintSelf(ostream& os, vtkIndent indent)
 {
-  this->Superclass::PrintSelf(os, indent);
+  this->vtkLacunaAlgorithm::PrintSelf(os, indent);
   os << indent << "FileName: " << (this->FileName ? this->FileName : "") << "\n";
 }

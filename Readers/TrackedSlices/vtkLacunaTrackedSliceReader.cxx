@@ -5,9 +5,7 @@
 #include "lacunaArrays.h"
 #include "lacunaFieldData.h"
 #include "lacunaMemory.h"
-#include "lacunaParameterText.h"
 #include "lacunaPrintableText.h"
-#include "lacunaPropertyRange.h"
 #include "lacunaProvenance.h"
 #include "lacunaReading.h"
 #include "lacunaSequenceFile.h"
@@ -120,8 +118,7 @@ double vtkLacunaTrackedSliceReader::GetMostBytes() const
 //------------------------------------------------------------------------------
 void vtkLacunaTrackedSliceReader::OpenSequence(Sequence& sequence)
 {
-  lacuna::RequireAtLeast(1, "FrameStride", this->FrameStride);
-  lacuna::RequireAtLeast(0, "MemoryLimit", this->MemoryLimit);
+  this->CheckProperties();
   sequence.File = std::make_shared<lacuna::SequenceFile>(
     this->FileName, this->FrameRange, this->FrameStride, this->GetMostBytes());
   if (this->ReplayInTime)
@@ -176,26 +173,33 @@ void vtkLacunaTrackedSliceReader::Announce(const lacuna::Ports& ports)
 }
 
 //------------------------------------------------------------------------------
+void vtkLacunaTrackedSliceReader::Describe(lacuna::Properties& properties) const
+{
+  using lacuna::ValueRange;
+  properties.Add("ImageFrame", this->ImageFrame)
+    .Add("ReferenceFrame", this->ReferenceFrame)
+    .Add("FrameRange", this->FrameRange)
+    .Add("FrameStride", this->FrameStride, ValueRange::AtLeast(1))
+    .Add("DropInvalidSlices", this->DropInvalidSlices)
+    .Add("KeepPatientIdentity", this->KeepPatientIdentity)
+    .Add("ReplayInTime", this->ReplayInTime)
+    .Add("MemoryLimit", this->MemoryLimit, ValueRange::AtLeast(0, "MiB"));
+}
+
+//------------------------------------------------------------------------------
 std::string vtkLacunaTrackedSliceReader::Parameters(int) const
 {
   const std::string& chain = this->Opened->Chain;
-  const lacuna::SequenceHeader& header = this->Opened->File->Header;
-  lacuna::ParameterText text;
-  text.Add("FileName", BaseName(this->FileName))
-    .Add("FileSize", vtksys::SystemTools::FileLength(header.DataFileName))
-    .Add("CalibrationFileName", BaseName(this->CalibrationFileName))
-    .Add("ImageFrame", Text(this->ImageFrame))
-    .Add("ReferenceFrame", Text(this->ReferenceFrame))
-    .Add("FrameRange", this->FrameRange)
-    .Add("FrameStride", this->FrameStride)
-    .Add("DropInvalidSlices", static_cast<bool>(this->DropInvalidSlices))
-    .Add("KeepPatientIdentity", static_cast<bool>(this->KeepPatientIdentity))
-    .Add("ReplayInTime", static_cast<bool>(this->ReplayInTime));
+  lacuna::Properties properties;
+  properties.Add("FileName", BaseName(this->FileName))
+    .Add("FileSize", vtksys::SystemTools::FileLength(this->Opened->File->Header.DataFileName))
+    .Add("CalibrationFileName", BaseName(this->CalibrationFileName));
+  this->Describe(properties);
   if (!chain.empty())
   {
-    text.Add("Chain", chain);
+    properties.Add("Chain", chain);
   }
-  return text.Get();
+  return properties.GetText();
 }
 
 //------------------------------------------------------------------------------
@@ -407,15 +411,7 @@ void vtkLacunaTrackedSliceReader::Make(
 //------------------------------------------------------------------------------
 void vtkLacunaTrackedSliceReader::PrintSelf(ostream& os, vtkIndent indent)
 {
-  this->Superclass::PrintSelf(os, indent);
+  this->vtkLacunaAlgorithm::PrintSelf(os, indent);
   os << indent << "FileName: " << Text(this->FileName) << "\n";
   os << indent << "CalibrationFileName: " << Text(this->CalibrationFileName) << "\n";
-  os << indent << "ImageFrame: " << Text(this->ImageFrame) << "\n";
-  os << indent << "ReferenceFrame: " << Text(this->ReferenceFrame) << "\n";
-  os << indent << "FrameRange: " << this->FrameRange[0] << " " << this->FrameRange[1] << "\n";
-  os << indent << "FrameStride: " << this->FrameStride << "\n";
-  os << indent << "DropInvalidSlices: " << (this->DropInvalidSlices ? "on" : "off") << "\n";
-  os << indent << "KeepPatientIdentity: " << (this->KeepPatientIdentity ? "on" : "off") << "\n";
-  os << indent << "ReplayInTime: " << (this->ReplayInTime ? "on" : "off") << "\n";
-  os << indent << "MemoryLimit: " << this->MemoryLimit << "\n";
 }

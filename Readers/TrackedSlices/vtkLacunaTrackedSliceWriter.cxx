@@ -102,12 +102,8 @@ void vtkLacunaTrackedSliceWriter::WriteStack(vtkImageData* stack)
 }
 
 //------------------------------------------------------------------------------
-void vtkLacunaTrackedSliceWriter::PrintSelf(ostream& os, vtkIndent indent)
+void vtkLacunaTrackedSliceWriter::Describe(lacuna::Properties& properties) const
 {
-  this->Superclass::PrintSelf(os, indent);
-  os << indent << "FileName: " << (this->FileName ? this->FileName : "") << "\n";
-  os << indent << "CompressionLevel: " << this->CompressionLevel << "\n";
-  os << indent << "KeepPatientIdentity: " << (this->KeepPatientIdentity ? "on" : "off") << "\n";
-  os << indent << "Piece: " << this->Piece << " of " << this->NumberOfPieces << "\n";
-  os << indent << "FileSize: " << this->FileSize << "\n";
+  properties.Add("CompressionLevel", this->CompressionLevel, lacuna::ValueRange::Between(0, 9))
+    .Add("KeepPatientIdentity", this->KeepPatientIdentity);
 }

@@ -51,7 +51,6 @@ class VTKLACUNAREADERSTRACKEDSLICES_EXPORT vtkLacunaTrackedSliceWriter : public 
 public:
   static vtkLacunaTrackedSliceWriter* New();
   vtkTypeMacro(vtkLacunaTrackedSliceWriter, vtkLacunaWriter);
-  void PrintSelf(ostream& os, vtkIndent indent) override;
 
   ///@{
   /// The file to write: .mha, .mhd, .nrrd or .nhdr.
@@ -62,7 +61,7 @@ public:
   ///@{
   /// 0: raw pixels, of which single slices can be read; 1 (quick) to 9 (small): one zlib or gzip
   /// stream. Default: 1.
-  vtkSetClampMacro(CompressionLevel, int, 0, 9);
+  vtkSetMacro(CompressionLevel, int);
   vtkGetMacro(CompressionLevel, int);
   ///@}
 
@@ -95,6 +94,7 @@ protected:
   int FillInputPortInformation(int port, vtkInformation* info) override;
   std::string Ask(vtkInformation* input) override;
   void WriteFile() override;
+  void Describe(lacuna::Properties& properties) const override;
 
 private:
   vtkLacunaTrackedSliceWriter(const vtkLacunaTrackedSliceWriter&) = delete;

@@ -126,6 +126,7 @@ void vtkLacunaVolumeReader::Announce(const lacuna::Ports& ports)
     [this](unsigned long code) { this->SetErrorCode(code); },
     [&]
     {
+      this->CheckProperties();
       auto content = std::make_unique<Content>();
       this->OpenVolume(*content);
       this->Opened = std::move(content);
@@ -211,23 +212,28 @@ void vtkLacunaVolumeReader::Make(const lacuna::Ports& ports, lacuna::AlgorithmEx
 }
 
 //------------------------------------------------------------------------------
+void vtkLacunaVolumeReader::Describe(lacuna::Properties& properties) const
+{
+  properties.Add("NIfTITransform", this->NIfTITransform, lacuna::NiftiTransformNames);
+}
+
+//------------------------------------------------------------------------------
 std::string vtkLacunaVolumeReader::Parameters(int) const
 {
-  const char* const transforms[] = { "Automatic", "SForm", "QForm" };
   std::error_code ignored;
-  return lacuna::ParameterText()
+  lacuna::Properties properties;
+  properties
     // tells which file it was to one who has it, and no name of a patient
     .Add("FileName",
       "fnv1a:" + lacuna::HashText(std::filesystem::path(this->FileName).filename().string()))
-    .Add("FileSize", std::filesystem::file_size(this->Opened->File.Slices.DataFileName, ignored))
-    .Add("NIfTITransform", transforms[this->NIfTITransform])
-    .Get();
+    .Add("FileSize", std::filesystem::file_size(this->Opened->File.Slices.DataFileName, ignored));
+  this->Describe(properties);
+  return properties.GetText();
 }
 
 //------------------------------------------------------------------------------
 void vtkLacunaVolumeReader::PrintSelf(ostream& os, vtkIndent indent)
 {
-  this->Superclass::PrintSelf(os, indent);
+  this->vtkLacunaAlgorithm::PrintSelf(os, indent);
   os << indent << "FileName: " << (this->FileName ? this->FileName : "") << "\n";
-  os << indent << "NIfTITransform: " << this->NIfTITransform << "\n";
 }

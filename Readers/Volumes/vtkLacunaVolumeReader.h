@@ -46,9 +46,9 @@ public:
   /// Which matrix of a NIfTI file says where the volume lies.
   enum NIfTITransformType
   {
-    NIFTI_AUTOMATIC = 0, ///< that which the file has; an error where it has two that differ
-    NIFTI_SFORM = 1,
-    NIFTI_QFORM = 2
+    Automatic = 0, ///< that which the file has; an error where it has two that differ
+    SForm = 1,
+    QForm = 2
   };
 
   ///@{
@@ -58,8 +58,8 @@ public:
   ///@}
 
   ///@{
-  /// Default: NIFTI_AUTOMATIC. Other formats have one matrix.
-  vtkSetClampMacro(NIfTITransform, int, NIFTI_AUTOMATIC, NIFTI_QFORM);
+  /// Default: Automatic. Other formats have one matrix.
+  vtkSetMacro(NIfTITransform, int);
   vtkGetMacro(NIfTITransform, int);
   ///@}
 
@@ -74,6 +74,7 @@ protected:
 
   void Announce(const lacuna::Ports& ports) override;
   void Make(const lacuna::Ports& ports, lacuna::AlgorithmExecution& execution) override;
+  void Describe(lacuna::Properties& properties) const override;
   std::string Parameters(int port) const override;
 
 private:
@@ -86,7 +87,7 @@ private:
   void AddFieldData(vtkImageData* output);
 
   char* FileName = nullptr;
-  int NIfTITransform = NIFTI_AUTOMATIC;
+  int NIfTITransform = Automatic;
   std::unique_ptr<Content> Opened;
 };
 #endif

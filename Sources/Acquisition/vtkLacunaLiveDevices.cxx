@@ -2,13 +2,16 @@
 #include "vtkLacunaLiveDevices.h"
 
 #include "lacunaDeviceChoice.h"
-#include "lacunaParameterText.h"
 #include "lacunaSweepAcquisition.h"
 
 #include <algorithm>
+#include <array>
 
 namespace
 {
+constexpr std::array<const char*, 2> RecordFormatNames{ "Binary", "ASCII" };
+constexpr std::array<const char*, 2> RecordUnitNames{ "Centimetre", "Inch" };
+
 std::string Text(const char* s)
 {
   return s ? s : "";
@@ -24,36 +27,66 @@ vtkLacunaLiveDevices::~vtkLacunaLiveDevices()
 }
 
 //------------------------------------------------------------------------------
+void vtkLacunaLiveDevices::ListTracker(lacuna::Properties& properties) const
+{
+  using lacuna::ValueRange;
+  properties.Add("TrackerConnection", this->TrackerConnection)
+    .Add("BaudRate", this->BaudRate, ValueRange::Between(2400, 115200))
+    .Add("Station", this->Station, ValueRange::Between(1, 4))
+    .Add("Hemisphere", this->Hemisphere, ValueRange::Any())
+    .Add("FiltersOff", this->FiltersOff)
+    .Add("RecordFormat", this->RecordFormat, RecordFormatNames)
+    .Add("RecordUnit", this->RecordUnit, RecordUnitNames)
+    .Add("TrackerReset", this->TrackerReset, lacuna::FastrakResetNames)
+    .Add("ButtonStarts", this->ButtonStarts); // the records have it then
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaLiveDevices::ListVideo(lacuna::Properties& properties) const
+{
+  properties.Add("VideoURL", this->VideoURL)
+    .Add("VideoOptions", this->VideoOptions)
+    .Add("Field", this->Field, lacuna::VideoFieldNames)
+    .Add("VideoLatency", this->VideoLatency, lacuna::ValueRange::Between(-1, 1, "s"));
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaLiveDevices::ListCrop(lacuna::Properties& properties) const
+{
+  properties.Add(
+    "CropRectangle", this->CropRectangle, lacuna::ValueRange::AtLeast(1, "pixels").OrZero("all"));
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaLiveDevices::Describe(lacuna::Properties& properties) const
+{
+  this->ListTracker(properties);
+  this->ListVideo(properties);
+  this->ListCrop(properties);
+}
+
+//------------------------------------------------------------------------------
 std::string vtkLacunaLiveDevices::DescribeTracker() const
 {
-  return lacuna::ParameterText()
-    .Add("TrackerConnection", this->TrackerConnection)
-    .Add("BaudRate", this->BaudRate)
-    .Add("Station", this->Station)
-    .Add("Hemisphere", this->Hemisphere)
-    .Add("FiltersOff", this->FiltersOff)
-    .Add("RecordFormat", this->RecordFormat)
-    .Add("RecordUnit", this->RecordUnit)
-    .Add("TrackerReset", this->TrackerReset)
-    .Add("ButtonStarts", this->ButtonStarts) // the records have it then
-    .Get();
+  lacuna::Properties properties;
+  this->ListTracker(properties);
+  return properties.GetText();
 }
 
 //------------------------------------------------------------------------------
 std::string vtkLacunaLiveDevices::DescribeVideo() const
 {
-  return lacuna::ParameterText()
-    .Add("VideoURL", this->VideoURL)
-    .Add("VideoOptions", this->VideoOptions)
-    .Add("Field", this->Field)
-    .Add("VideoLatency", this->VideoLatency)
-    .Get();
+  lacuna::Properties properties;
+  this->ListVideo(properties);
+  return properties.GetText();
 }
 
 //------------------------------------------------------------------------------
 std::string vtkLacunaLiveDevices::DescribeCrop() const
 {
-  return lacuna::ParameterText().Add("CropRectangle", this->CropRectangle).Get();
+  lacuna::Properties properties;
+  this->ListCrop(properties);
+  return properties.GetText();
 }
 
 //------------------------------------------------------------------------------

@@ -36,7 +36,7 @@ public:
   enum RecordFormats
   {
     Binary = 0,
-    ASCII = 1
+    Ascii = 1
   };
   enum RecordUnits
   {
@@ -83,19 +83,19 @@ public:
   ///@{
   /// How the tracker writes its records. ASCII is longer, which costs records a second, and coarser
   /// below 57600 baud: 0.01 of RecordUnit. Default: Binary.
-  vtkSetClampMacro(RecordFormat, int, Binary, ASCII);
+  vtkSetMacro(RecordFormat, int);
   vtkGetMacro(RecordFormat, int);
   ///@}
   ///@{
   /// The unit that the tracker writes lengths in; slices have mm in any case. Default: Centimetre.
-  vtkSetClampMacro(RecordUnit, int, Centimetre, Inch);
+  vtkSetMacro(RecordUnit, int);
   vtkGetMacro(RecordUnit, int);
   ///@}
   ///@{
   /// What of the tracker's own settings is undone when it is opened: its alignment and boresight,
   /// so that poses are in the transmitter's frame; all but the serial line's; or nothing, for a
   /// tracker that another program has aligned. Default: Frames.
-  vtkSetClampMacro(TrackerReset, int, Nothing, Factory);
+  vtkSetMacro(TrackerReset, int);
   vtkGetMacro(TrackerReset, int);
   ///@}
   ///@{
@@ -120,7 +120,7 @@ public:
   ///@}
   ///@{
   /// What is used of interlaced frames, whose fields are of two instants. Default: Both.
-  vtkSetClampMacro(Field, int, Both, Bottom);
+  vtkSetMacro(Field, int);
   vtkGetMacro(Field, int);
   ///@}
   ///@{
@@ -140,6 +140,7 @@ protected:
   vtkLacunaLiveDevices() = default;
   ~vtkLacunaLiveDevices() override;
 
+  void Describe(lacuna::Properties& properties) const override;
   /// The properties of each device, in one line.
   std::string DescribeTracker() const;
   std::string DescribeVideo() const;
@@ -153,6 +154,10 @@ protected:
 private:
   vtkLacunaLiveDevices(const vtkLacunaLiveDevices&) = delete;
   void operator=(const vtkLacunaLiveDevices&) = delete;
+
+  void ListTracker(lacuna::Properties& properties) const;
+  void ListVideo(lacuna::Properties& properties) const;
+  void ListCrop(lacuna::Properties& properties) const;
 
   char* TrackerConnection = nullptr;
   int BaudRate = 115200;

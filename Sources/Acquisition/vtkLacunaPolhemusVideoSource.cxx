@@ -80,7 +80,7 @@ void vtkLacunaPolhemusVideoSource::Start()
   }
   else
   {
-    this->Configure();
+    this->Configure(false);
   }
   if (!this->Now->Acquisition || !this->Now->Trouble.empty())
   {
@@ -245,7 +245,7 @@ void vtkLacunaPolhemusVideoSource::Announce(const lacuna::Ports& ports)
   lacuna::LiveSweep& now = *this->Now;
   if (now.Acquisition)
   {
-    this->Configure();
+    this->Configure(true);
   }
   const auto set = [&](int port, const lacuna::GrowingStack* stack)
   {
@@ -305,11 +305,16 @@ std::string vtkLacunaPolhemusVideoSource::Parameters(int port) const
 }
 
 //------------------------------------------------------------------------------
+void vtkLacunaPolhemusVideoSource::Describe(lacuna::Properties& properties) const
+{
+  this->vtkLacunaLiveDevices::Describe(properties);
+  this->ListRules(properties);
+  properties.Add("LiveDisplay", this->LiveDisplay);
+}
+
+//------------------------------------------------------------------------------
 void vtkLacunaPolhemusVideoSource::PrintSelf(ostream& os, vtkIndent indent)
 {
-  this->Superclass::PrintSelf(os, indent);
-  os << indent << this->DescribeDevices() << "\n";
-  os << indent << this->DescribeRules() << "\n";
-  os << indent << "LiveDisplay: " << (this->LiveDisplay ? "on" : "off") << "\n";
+  this->vtkLacunaAlgorithm::PrintSelf(os, indent);
   os << indent << "SliceCount: " << this->GetSliceCount() << "\n";
 }

@@ -84,7 +84,7 @@ public:
 
   ///@{
   /// What becomes a slice. Default: Movement.
-  vtkSetClampMacro(CaptureMode, int, Movement, EveryFrame);
+  vtkSetMacro(CaptureMode, int);
   vtkGetMacro(CaptureMode, int);
   ///@}
   ///@{
@@ -193,6 +193,7 @@ protected:
   int FillOutputPortInformation(int port, vtkInformation* info) override;
   void Announce(const lacuna::Ports& ports) override;
   void Make(const lacuna::Ports& ports, lacuna::AlgorithmExecution& execution) override;
+  void Describe(lacuna::Properties& properties) const override;
   std::string Parameters(int port) const override;
 
 private:
@@ -206,7 +207,10 @@ private:
   void ReplaceBrokenDevices();
   void Open();
   void Close();
-  void Configure();
+  void Configure(bool isUpdate);
+  void Refuse(const std::string& trouble);
+  void ListRules(lacuna::Properties& properties) const;
+  lacuna::AcquisitionRules GetRules() const;
   lacuna::AcquisitionRules MakeRules(bool keepsCalibration);
   void Apply(lacuna::AcquisitionRules rules, bool keepsCalibration);
   bool TakeOver();

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // How vtkLacunaPolhemusVideoSource opens its devices and makes its acquisition what the properties say.
 #include "lacunaLiveSweep.h"
-#include "lacunaParameterText.h"
 #include "lacunaPrintableText.h"
 #include "lacunaProbeFrames.h"
 #include "vtkLacunaPolhemusVideoSource.h"
@@ -9,6 +8,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <stdexcept>
 #include <string>
 
 namespace
@@ -31,20 +31,39 @@ std::string DescribeVersion(const std::string& fileName)
 }
 
 //------------------------------------------------------------------------------
+// Those that the kernel knows, too.
+lacuna::AcquisitionRules vtkLacunaPolhemusVideoSource::GetRules() const
+{
+  lacuna::AcquisitionRules rules;
+  rules.Mode = static_cast<lacuna::CaptureMode>(this->CaptureMode);
+  rules.MovementThreshold = this->MovementThreshold;
+  rules.SpeedLimit = this->SpeedLimit;
+  rules.TimeOffset = this->TimeOffset;
+  rules.HoldLastPose = this->HoldLastPose;
+  return rules;
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaPolhemusVideoSource::ListRules(lacuna::Properties& properties) const
+{
+  using lacuna::ValueRange;
+  properties.Add("CalibrationFileName", this->CalibrationFileName)
+    .Add(
+      "PixelSpacing", this->PixelSpacing, ValueRange::Above(0, "mm").OrZero("of the calibration"));
+  this->GetRules().Describe(properties);
+  properties
+    .Add("MemoryLimit", this->MemoryLimit,
+      ValueRange::AtLeast(1, "MiB").OrZero("half of the free memory"))
+    .Add("RecordFileName", this->RecordFileName)
+    .Add("RecordCompression", this->RecordCompression, lacuna::AcquisitionRules::CompressionRange);
+}
+
+//------------------------------------------------------------------------------
 std::string vtkLacunaPolhemusVideoSource::DescribeRules() const
 {
-  return lacuna::ParameterText()
-    .Add("CalibrationFileName", this->CalibrationFileName)
-    .Add("PixelSpacing", this->PixelSpacing)
-    .Add("TimeOffset", this->TimeOffset)
-    .Add("HoldLastPose", this->HoldLastPose)
-    .Add("CaptureMode", this->CaptureMode)
-    .Add("MovementThreshold", this->MovementThreshold)
-    .Add("SpeedLimit", this->SpeedLimit)
-    .Add("MemoryLimit", this->MemoryLimit)
-    .Add("RecordFileName", this->RecordFileName)
-    .Add("RecordCompression", this->RecordCompression)
-    .Get();
+  lacuna::Properties properties;
+  this->ListRules(properties);
+  return properties.GetText();
 }
 
 //------------------------------------------------------------------------------
@@ -128,8 +147,22 @@ void vtkLacunaPolhemusVideoSource::ReplaceBrokenDevices()
 }
 
 //------------------------------------------------------------------------------
-// Makes the acquisition what the properties say; an error says why it cannot be, once.
-void vtkLacunaPolhemusVideoSource::Configure()
+// Nothing changes, and the button does nothing, as Start with rules that are not wanted.
+void vtkLacunaPolhemusVideoSource::Refuse(const std::string& trouble)
+{
+  lacuna::LiveSweep& now = *this->Now;
+  now.Trouble = trouble;
+  if (this->ButtonStarts && now.Acquisition && !now.GetState().Capturing)
+  {
+    now.Rules.ButtonStarts = false;
+    now.Acquisition->SetRules(now.Rules);
+  }
+}
+
+//------------------------------------------------------------------------------
+// Makes the acquisition what the properties say; an error says why it cannot be, once. isUpdate: that a
+// property has a value that it may not have is said by the base.
+void vtkLacunaPolhemusVideoSource::Configure(bool isUpdate)
 {
   lacuna::LiveSweep& now = *this->Now;
   this->ReplaceBrokenDevices();
@@ -147,6 +180,19 @@ void vtkLacunaPolhemusVideoSource::Configure()
     return;
   }
   now.Tried = tried;
+  try
+  {
+    this->CheckProperties();
+  }
+  catch (const std::invalid_argument& e)
+  {
+    this->Refuse(e.what());
+    if (!isUpdate)
+    {
+      vtkErrorMacro(<< lacuna::ToPrintable(now.Trouble));
+    }
+    return;
+  }
   try
   {
     // One that is chosen together with other devices is theirs.
@@ -167,13 +213,8 @@ void vtkLacunaPolhemusVideoSource::Configure()
   }
   catch (const std::exception& e)
   {
-    now.Trouble = e.what();
+    this->Refuse(e.what());
     vtkErrorMacro(<< lacuna::ToPrintable(now.Trouble));
-    if (this->ButtonStarts && now.Acquisition && !now.GetState().Capturing)
-    {
-      now.Rules.ButtonStarts = false; // as Start, which does nothing with rules that are not wanted
-      now.Acquisition->SetRules(now.Rules);
-    }
   }
 }
 
@@ -183,7 +224,7 @@ lacuna::AcquisitionRules vtkLacunaPolhemusVideoSource::MakeRules(bool keepsCalib
 {
   const lacuna::LiveSweep& now = *this->Now;
   const std::string calibration = Text(this->CalibrationFileName);
-  lacuna::AcquisitionRules rules;
+  lacuna::AcquisitionRules rules = this->GetRules();
   if (!calibration.empty())
   {
     const lacuna::ProbeFrames frames = lacuna::ReadProbeFrames(calibration, this->PixelSpacing);
@@ -199,11 +240,6 @@ lacuna::AcquisitionRules vtkLacunaPolhemusVideoSource::MakeRules(bool keepsCalib
     rules.ImageToProbe = now.Calibration.ImageToProbe;
     rules.TrackerToReference = now.Calibration.TrackerToReference;
   }
-  rules.Mode = static_cast<lacuna::CaptureMode>(this->CaptureMode);
-  rules.MovementThreshold = this->MovementThreshold;
-  rules.SpeedLimit = this->SpeedLimit;
-  rules.TimeOffset = this->TimeOffset;
-  rules.HoldLastPose = this->HoldLastPose;
   rules.RecordFileName = Text(this->RecordFileName);
   rules.RecordCompressionLevel = this->RecordCompression;
   rules.MemoryLimit = this->MemoryLimit * Mebibyte;
@@ -241,7 +277,7 @@ void vtkLacunaPolhemusVideoSource::Apply(lacuna::AcquisitionRules rules, bool ke
 void vtkLacunaPolhemusVideoSource::Connect()
 {
   this->Now->Tried.clear(); // asked for: tries again what failed
-  this->Configure();
+  this->Configure(false);
   this->Modified();
 }
 

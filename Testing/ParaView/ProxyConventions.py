@@ -139,10 +139,10 @@ def check_declared(name, proxy):
     faults = []
     for p in settings(proxy):
         allowed = table.get(p.get("name"), ("", None))[1]
-        entries = [entry.get("text") for entry in p.iterfind("EnumerationDomain/Entry")]
+        entries = [(entry.get("value"), entry.get("text")) for entry in p.iterfind("EnumerationDomain/Entry")]
         domain = next((d for d in p if d.tag in ("DoubleRangeDomain", "IntRangeDomain") and d.find("RequiredProperties") is None), None)
         if entries:
-            choices = [f"{value} ({text})" for value, text in enumerate(entries)]
+            choices = [f"{value} ({text})" for value, text in entries]
             fault = allowed != ", ".join(choices[:-1]) + " or " + choices[-1]
         elif allowed:
             fault = differs(RANGE.fullmatch(allowed), domain, p.find("Hints/LacunaLabel"))
@@ -159,10 +159,13 @@ def differs(range_, domain, label):
     high = next((float(range_[key]) for key in ("high", "high2", "high3") if range_[key]), None)
     if range_["zero"] and low is not None:
         low = min(low, 0)
-    shown = {end: float(domain.get(end).split()[0]) for end in ("min", "max") if domain is not None and domain.get(end)}
+    shown = {}
+    for end in ("min", "max"):
+        if domain is not None and domain.get(end):
+            shown[end], = {float(number) for number in domain.get(end).split()}  # the same for each element
     unit = (range_["unit"] or range_["unit3"] or "").strip().replace("degrees", "°").replace("^2", "²")
-    if low is None and high is None and label is not None:
-        unit = label.get("unit", "")  # "a finite number" has none
+    if range_[0].endswith("a finite number"):
+        unit = label.get("unit", "") if label is not None else ""
     return (shown.get("min") != low or shown.get("max", high) is not None and (high is None or shown.get("max", high) > high)
             or label is not None and (label.get("unit", ""), label.get("zero")) != (unit, range_["zero"]))
 

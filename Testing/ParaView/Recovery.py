@@ -131,7 +131,7 @@ for stride, expected in (1, 1600 + 50), (0, 50), (2, 800 + 50):
                     each.UpdatePipeline()
                 assert stride, f"{each}: nothing is said"
             except PipelineError as error:
-                assert str(error) == "Stride is 0; give 1 or more" and not stride, (each, stride, str(error))
+                assert str(error) == "Stride is 0; it must be 1 or more" and not stride, (each, stride, str(error))
         assert each == planes or each.GetDataInformation().GetNumberOfPoints() == expected, (each, stride)
     for group in joined[-2:]:
         try:

@@ -10,7 +10,7 @@ from xml.etree import ElementTree
 
 import lacuna_window
 
-ERROR = "Stride is 0; give 1 or more"
+ERROR = "Stride is 0; it must be 1 or more"
 MENUS = "LACUNA_MENUS"  # names of the proxies in the menus, without Lacuna
 ELSEWHERE = {"PolhemusVideoSource", "SliceOutliner", "SkullPhantom", "BSplineIsoRayCaster", "DepthMapSurface", "Mirror", "RBFHoleFiller",
              "ImplantPlate", "DefectModel", "PressOrientation", "MillingToolPath"}

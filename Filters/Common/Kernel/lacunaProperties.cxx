@@ -43,8 +43,11 @@ std::string Choices::Describe() const
   std::string text;
   for (int i = 0; i < this->Size_; ++i)
   {
-    text += i == 0 ? "" : i + 1 < this->Size_ ? ", " : " or ";
-    text += std::to_string(i) + " (" + this->Names[i] + ")";
+    if (*this->Names[i])
+    {
+      text += text.empty() ? "" : i + 1 < this->Size_ ? ", " : " or ";
+      text += std::to_string(i) + " (" + this->Names[i] + ")";
+    }
   }
   return text;
 }

@@ -17,7 +17,8 @@
 
 namespace lacuna
 {
-/// The names of an enum's values, from 0 on. Declared beside it, of a constexpr array of texts.
+/// The names of an enum's values, from 0 on. Declared beside it, of a constexpr array of texts. What has an empty
+/// name may not be chosen; the last one has a name.
 class Choices
 {
 public:

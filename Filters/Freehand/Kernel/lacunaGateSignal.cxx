@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lacunaGateSignal.h"
 
+#include "lacunaProperties.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -37,9 +39,9 @@ GateSignal::GateSignal(GateKind kind, const std::vector<double>& times,
   , Period(period)
   , MaximumGap(maximumGap)
 {
-  if (kind != GateKind::Value && !(period > 0 && std::isfinite(period)))
+  if (kind != GateKind::Value)
   {
-    throw std::invalid_argument("the period of the gate signal must be above 0");
+    ValueRange::Above(0).Check("Period", period);
   }
   if (kind != GateKind::Trigger && values.size() != times.size())
   {

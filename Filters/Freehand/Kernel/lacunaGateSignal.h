@@ -4,6 +4,7 @@
 #ifndef lacunaGateSignal_h
 #define lacunaGateSignal_h
 
+#include <array>
 #include <vector>
 
 namespace lacuna
@@ -15,6 +16,7 @@ enum class GateKind
   Phase,  ///< a number that grows by a period in each cycle and falls back to its beginning
   Trigger ///< there is no number, but an instant at which each cycle begins, such as the R wave
 };
+inline constexpr std::array<const char*, 3> GateKindNames{ "Value", "Phase", "Trigger" };
 
 /// A signal that was sampled at some instants. Between two of them:
 /// - Value: it changes evenly.

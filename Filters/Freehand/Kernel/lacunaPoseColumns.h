@@ -4,6 +4,7 @@
 #ifndef lacunaPoseColumns_h
 #define lacunaPoseColumns_h
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,7 @@ enum class PoseFormat
   Quaternion, ///< position and unit quaternion
   Euler       ///< position, azimuth, elevation and roll
 };
+inline constexpr std::array<const char*, 3> PoseFormatNames{ "Matrix", "Quaternion", "Euler" };
 
 enum class LengthUnit
 {
@@ -24,6 +26,7 @@ enum class LengthUnit
   Centimetre,
   Inch
 };
+inline constexpr std::array<const char*, 4> LengthUnitNames{ "mm", "m", "cm", "inch" };
 
 /// Millimetres of one unit.
 double GetMillimetres(LengthUnit unit);

@@ -7,6 +7,7 @@
 #include "lacunaMatrix4.h"
 #include "lacunaPoseColumns.h"
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -21,6 +22,8 @@ enum class PoseTransform
   ImageToReference,
   ReferenceToImage
 };
+inline constexpr std::array<const char*, 4> PoseTransformNames{ "ProbeToReference",
+  "ReferenceToProbe", "ImageToReference", "ReferenceToImage" };
 
 struct PoseTableOptions
 {

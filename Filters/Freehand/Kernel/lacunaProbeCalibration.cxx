@@ -188,17 +188,12 @@ void Check(const std::vector<CalibrationPick>& picks, const ProbeCalibrationOpti
   }
   for (const double spacing : options.PixelSpacing)
   {
-    if (!options.EstimateScale && !(spacing > 0 && std::isfinite(spacing)))
+    if (!options.EstimateScale)
     {
-      throw std::invalid_argument(
-        "PixelSpacing must be two lengths in mm above 0; where it is not known set EstimateScale");
+      ValueRange::Above(0, "mm").Check("PixelSpacing", spacing);
     }
   }
-  if (!(options.OutlierLimit == 0 ||
-        (options.OutlierLimit >= 2 && std::isfinite(options.OutlierLimit))))
-  {
-    throw std::invalid_argument("OutlierLimit must be 0 (none is left out) or at least 2");
-  }
+  ProbeCalibrationOptions::OutlierLimitRange.Check("OutlierLimit", options.OutlierLimit);
 }
 
 Matrix4 ToMatrix4(

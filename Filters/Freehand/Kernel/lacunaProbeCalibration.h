@@ -19,6 +19,7 @@
 #define lacunaProbeCalibration_h
 
 #include "lacunaMatrix4.h"
+#include "lacunaProperties.h"
 
 #include <array>
 #include <cstddef>
@@ -55,11 +56,12 @@ struct CalibrationPick
 
 struct ProbeCalibrationOptions
 {
+  static constexpr ValueRange OutlierLimitRange = ValueRange::AtLeast(2).OrZero("none is left out");
+
   /// mm a column, mm a row, above 0; not used with EstimateScale, nor of tips.
   Vec2 PixelSpacing{ 1, 1 };
   bool EstimateScale = false; ///< find the pixel spacing along with the rest
-  /// Picks with an equation that is off by more than so many standard deviations are left out, 2 and
-  /// more; 0: none is.
+  /// Picks with an equation that is off by more than so many standard deviations are left out.
   double OutlierLimit = 4;
 };
 

@@ -99,6 +99,8 @@ enum class PixelSampling
   Bilinear,
   Nearest ///< that of the pixel in whose area the foot lies
 };
+inline constexpr std::array<const char*, 3> PixelSamplingNames{ "Footprint", "Bilinear",
+  "Nearest" };
 
 /// Where a slice lies seen from the voxels, and its grey levels: the slice's own pixels, or a
 /// raster of means over footprints.

@@ -273,10 +273,7 @@ SweptVolume::SweptVolume(
       throw std::invalid_argument("the requested extent is not a part of the volume");
     }
   }
-  if (!(options.FootprintScale > 0) || !std::isfinite(options.FootprintScale))
-  {
-    throw std::invalid_argument("the footprint's scale must be positive");
-  }
+  SweptVolume::FootprintScaleRange.Check("FootprintScale", options.FootprintScale);
   if (IsWeighted(options))
   {
     MakeVoxels<WeightedVoxel>(extent, options.DoublePrecision, this->Voxels);

@@ -5,6 +5,7 @@
 #define lacunaSweptVolume_h
 
 #include "lacunaExecution.h"
+#include "lacunaProperties.h"
 #include "lacunaSampledSlice.h"
 #include "lacunaSliceFingerprint.h"
 #include "lacunaSliceImage.h"
@@ -36,12 +37,14 @@ public:
     /// Each pixel goes to the voxel in which its centre lies; nothing is interpolated.
     NearestVoxel
   };
+  static constexpr std::array<const char*, 2> MethodNames{ "BetweenSlices", "NearestVoxel" };
+  static constexpr ValueRange FootprintScaleRange = ValueRange::Above(0, "voxels");
   struct Options
   {
     Method Interpolation = Method::BetweenSlices;
     PixelSampling Sampling = PixelSampling::Footprint; ///< BetweenSlices only
     Compounding Compound = Compounding::Mean;
-    /// Width of footprints in voxels, positive. More than 1 averages noise away, and detail.
+    /// Width of footprints in voxels, in FootprintScaleRange. More than 1 averages noise away, and detail.
     double FootprintScale = 1;
     /// Footprints have a height too, FootprintScale voxels along the slices' normals: voxels become
     /// the mean over this way of the grey levels that are interpolated between all slices it meets.
@@ -56,8 +59,8 @@ public:
   };
 
   /// extent: first and last voxel along x, y, z, of the part of grid to fill.
-  /// Throws std::invalid_argument when it is not inside the grid or FootprintScale is not positive
-  /// and finite, std::bad_alloc without memory.
+  /// Throws std::invalid_argument when it is not inside the grid or FootprintScale is out of range,
+  /// std::bad_alloc without memory.
   SweptVolume(const VolumeGrid& grid, const std::array<int, 6>& extent, const Options& options);
   ~SweptVolume();
   SweptVolume(const SweptVolume&) = delete;

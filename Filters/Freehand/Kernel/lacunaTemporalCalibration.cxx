@@ -14,7 +14,6 @@ namespace lacuna
 {
 namespace
 {
-constexpr double LongestLag = 2;
 constexpr std::size_t FewestFrames = 30;
 constexpr double SmallestCorrelation = 0.9;
 constexpr double StandingStill = 0.5; // mm, standard deviation of the receiver's position
@@ -224,10 +223,7 @@ Peak FindOnlyPeak(
 TemporalCalibration TemporalCalibration::Solve(
   const std::vector<Sample>& samples, double maximumLag, double maximumGap)
 {
-  if (!(maximumLag > 0 && maximumLag <= LongestLag))
-  {
-    throw std::invalid_argument("MaximumLag must be above 0 and at most 2 s");
-  }
+  MaximumLagRange.Check("MaximumLag", maximumLag);
   for (std::size_t i = 0; i < samples.size(); ++i)
   {
     if (!std::isfinite(samples[i].Time) || (i > 0 && samples[i].Time <= samples[i - 1].Time))

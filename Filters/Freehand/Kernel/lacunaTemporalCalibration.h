@@ -5,6 +5,7 @@
 #define lacunaTemporalCalibration_h
 
 #include "lacunaMatrix4.h"
+#include "lacunaProperties.h"
 
 #include <cstddef>
 #include <vector>
@@ -16,6 +17,8 @@ namespace lacuna
 /// weights, if both are taken at the same instant. The lag is the one at which that sum fits best.
 struct TemporalCalibration
 {
+  static constexpr ValueRange MaximumLagRange = ValueRange::Above(0, "s").UpTo(2);
+
   /// s by which the image is late: the pose that belongs to a frame stamped t is that of t - Lag.
   double Lag = 0;
   double Spread = 0;      ///< s, standard deviation of Lag as the residuals let expect
@@ -36,7 +39,7 @@ struct TemporalCalibration
 
   /// samples: in order of time. Positions between poses are interpolated straight; frames beyond the
   /// first or the last pose, or between poses more than maximumGap s apart, are not used.
-  /// Throws std::invalid_argument when maximumLag is not above 0 and at most 2 s, times are not finite
+  /// Throws std::invalid_argument when maximumLag is out of range, times are not finite
   /// and ascending, fewer than 30 frames can be used at every lag, the probe or the image's signal
   /// stands still, the correlation stays below 0.9, or is largest at the end of the range, or when a
   /// second lag fits nearly as well: the sign of the weights is not known, so a regular motion looks the

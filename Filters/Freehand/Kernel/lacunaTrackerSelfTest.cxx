@@ -114,6 +114,18 @@ ReceiverPlaces::ReceiverPlaces(const std::vector<Matrix4>& poses, double distanc
 }
 
 //------------------------------------------------------------------------------
+void TrackerSelfTestOptions::Describe(Properties& properties) const
+{
+  properties
+    .Add("SpeedLimit", this->SpeedLimit, ValueRange::Above(0, "mm/s").OrZero("none left out"))
+    .Add("RevisitDistance", this->RevisitDistance, ValueRange::AtLeast(0.1, "mm"))
+    .Add("RevisitAngle", this->RevisitAngle, ValueRange::Above(0, "degrees").UpTo(180))
+    .Add("TranslationAccuracy", this->Accuracy.Translation, ValueRange::Above(0, "mm"))
+    .Add("AngularAccuracy", this->Accuracy.Angle, ValueRange::Above(0, "degrees"))
+    .Add("RangeLimit", this->RangeLimit, ValueRange::Above(0, "mm"));
+}
+
+//------------------------------------------------------------------------------
 namespace
 {
 constexpr std::size_t FewestPairs = 10;
@@ -125,22 +137,9 @@ constexpr double FlipGain = 0.2; // what is left of an error when a sign is mend
 
 void Check(const std::vector<ReceiverPair>& pairs, const TrackerSelfTestOptions& options)
 {
-  const auto check = [](bool right, const char* text)
-  {
-    if (!right)
-    {
-      throw std::invalid_argument(text);
-    }
-  };
-  const auto isPositive = [](double x) { return x > 0 && std::isfinite(x); };
-  check(options.SpeedLimit >= 0 && std::isfinite(options.SpeedLimit),
-    "SpeedLimit must be 0 (none) or a speed in mm/s");
-  check(isPositive(options.RevisitDistance) && options.RevisitDistance >= 0.1,
-    "RevisitDistance must be at least 0.1 mm");
-  check(isPositive(options.RevisitAngle), "RevisitAngle must be above 0 degrees");
-  check(isPositive(options.Accuracy.Translation) && isPositive(options.Accuracy.Angle),
-    "TranslationAccuracy and AngularAccuracy must be above 0");
-  check(isPositive(options.RangeLimit), "RangeLimit must be above 0 mm");
+  Properties properties;
+  options.Describe(properties);
+  properties.Check();
   for (const ReceiverPair& pair : pairs)
   {
     for (const Matrix4* pose : { &pair.First, &pair.Second })

@@ -10,6 +10,7 @@
 #define lacunaTrackerSelfTest_h
 
 #include "lacunaMatrix4.h"
+#include "lacunaProperties.h"
 #include "lacunaSliceMotion.h"
 
 #include <cstddef>
@@ -48,12 +49,14 @@ struct ReceiverPair
 struct TrackerSelfTestOptions
 {
   /// mm/s; pairs in which a receiver moves faster are left out, since the two are not measured at
-  /// the same instant. 0: none is.
+  /// the same instant.
   double SpeedLimit = 50;
   double RevisitDistance = 20; ///< mm, see ReceiverPlaces
   double RevisitAngle = 15;    ///< degrees
   TrackerAccuracy Accuracy;    ///< as specified, of one receiver
   double RangeLimit = 760;     ///< mm from the transmitter for which Accuracy is specified
+
+  void Describe(Properties& properties) const; ///< with the ranges
 };
 
 class TrackerSelfTest

@@ -169,13 +169,7 @@ VolumeGrid MakeVolumeGrid(const std::vector<SliceImage>& slices, const VolumeGri
   for (int a = 0; a < 3; ++a)
   {
     const double wanted = request.Spacing[a];
-    if (!std::isfinite(wanted) || wanted < 0)
-    {
-      std::ostringstream message;
-      message << "OutputSpacing along " << AxisNames[a] << " is " << wanted
-              << " mm; it must be positive, or 0 to take it from the data";
-      throw std::invalid_argument(message.str());
-    }
+    VolumeGridRequest::SpacingRange.Check("OutputSpacing", wanted);
     if (wanted == 0 && fromData == 0)
     {
       fromData = FitSpacing(box, GetLargestPixelSpacing(slices), VoxelsFromData);

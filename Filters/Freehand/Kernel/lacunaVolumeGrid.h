@@ -4,6 +4,7 @@
 #ifndef lacunaVolumeGrid_h
 #define lacunaVolumeGrid_h
 
+#include "lacunaProperties.h"
 #include "lacunaSliceImage.h"
 
 #include <array>
@@ -26,6 +27,8 @@ struct VolumeGrid
 /// What the user wants of a grid.
 struct VolumeGridRequest
 {
+  static constexpr ValueRange SpacingRange = ValueRange::Above(0, "mm").OrZero("automatic");
+
   /// mm; 0 on an axis takes the spacing from the data (see MakeVolumeGrid).
   Vec3 Spacing{ 0, 0, 0 };
   /// x, y, z minimum and maximum, mm; 1, -1 on an axis takes the bounds from the data.
@@ -42,7 +45,7 @@ struct VolumeGridRequest
 ///   if the box would then have over 2^23 voxels (about 203 x 203 x 203): the spacing that gives
 ///   this number, rounded up to two digits.
 ///
-/// Throws std::invalid_argument for negative or non-finite spacing, inverted bounds, and when the
+/// Throws std::invalid_argument for a spacing out of range, inverted bounds, and when the
 /// volume would not fit into the memory limit; the text then says how many bytes it would take, which
 /// spacing would do, and which slice lies far off, if one does.
 VolumeGrid MakeVolumeGrid(const std::vector<SliceImage>& slices, const VolumeGridRequest& request);

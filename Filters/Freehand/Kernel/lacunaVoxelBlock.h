@@ -20,6 +20,7 @@ enum class Compounding
   Mean,
   Maximum
 };
+inline constexpr std::array<const char*, 2> CompoundingNames{ "Mean", "Maximum" };
 
 /// One voxel. Value and count lie side by side: a sample touches one cache line.
 template <class Real>

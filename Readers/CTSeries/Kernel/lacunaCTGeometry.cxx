@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lacunaCTGeometry.h"
 
-#include "lacunaParameterText.h"
-
 #include <algorithm>
 #include <cmath>
 #include <sstream>
@@ -572,11 +570,7 @@ void NoteNumbers(CTGeometry& geometry)
 //------------------------------------------------------------------------------
 CTGeometry FindCTGeometry(const std::vector<CTFrame>& frames, const CTGeometryOptions& options)
 {
-  if (!(options.PositionTolerance >= 1e-6 && options.PositionTolerance <= 10))
-  {
-    throw std::runtime_error("PositionTolerance is " + FormatNumber(options.PositionTolerance) +
-      " mm; it must be from 1e-6 to 10 mm");
-  }
+  CTGeometryOptions::ToleranceRange.Check("PositionTolerance", options.PositionTolerance);
   const CTFrame& example = frames.front();
   CTGeometry geometry;
   geometry.FrameColumns = geometry.Columns = example.Header->Columns;

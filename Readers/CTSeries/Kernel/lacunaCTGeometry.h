@@ -5,6 +5,7 @@
 #define lacunaCTGeometry_h
 
 #include "lacunaCTFrame.h"
+#include "lacunaProperties.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -44,11 +45,13 @@ SliceSpacing FindSliceSpacing(const std::vector<double>& positions, double toler
 
 struct CTGeometryOptions
 {
+  static constexpr ValueRange ToleranceRange = ValueRange::Between(1e-6, 10, "mm");
+
   /// Whether missing and displaced slices are interpolated; else they are an error.
   bool InterpolateMissing = false;
   /// Whether a tilted gantry is corrected; else it is an error.
   bool CorrectTilt = true;
-  /// How far slices may lie from equal spacing or from a straight row, 1e-6 to 10 mm; for spacing
+  /// How far slices may lie from equal spacing or from a straight row, mm; for spacing
   /// and for images at one position at most a quarter of the usual distance of slices.
   double PositionTolerance = 0.05;
   /// Whether two images at one position show the same; then the second is left out. When it is
@@ -95,7 +98,7 @@ struct CTGeometry
 /// Sorts the images by position along their normal and finds the grid. The frames have passed
 /// CheckSameVolume. The planes are parallel to the images, so correcting a tilt moves pixels only
 /// within their image; the grid grows so that none is lost. Throws std::runtime_error naming
-/// positions and files.
+/// positions and files, std::invalid_argument for a tolerance out of range.
 CTGeometry FindCTGeometry(const std::vector<CTFrame>& frames, const CTGeometryOptions& options);
 }
 #endif

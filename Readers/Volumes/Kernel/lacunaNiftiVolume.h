@@ -50,6 +50,7 @@ enum class NiftiTransform
   SForm,
   QForm
 };
+inline constexpr std::array<const char*, 3> NiftiTransformNames{ "Automatic", "SForm", "QForm" };
 
 /// The volume. Throws std::runtime_error with the file's name, what is wrong and what would be right:
 /// no matrix or two that differ, several volumes, voxels that are no real numbers, unknown units.

@@ -109,6 +109,7 @@ enum class FastrakReset
   Frames,  ///< alignment and boresight: poses are in the transmitter's frame
   Factory  ///< everything, but for the serial line: also filters and the stylus's tip
 };
+inline constexpr std::array<const char*, 3> FastrakResetNames{ "Nothing", "Frames", "Factory" };
 
 struct FastrakSettings
 {

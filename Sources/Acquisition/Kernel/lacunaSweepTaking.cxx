@@ -110,7 +110,6 @@ void CaptureRule::Continue(const CaptureRule& other)
 namespace
 {
 constexpr double NaN = std::numeric_limits<double>::quiet_NaN();
-constexpr double LargestOffset = 1; // s
 
 std::string SizeText(int columns, int rows)
 {
@@ -162,6 +161,16 @@ CaptureRule MakeRule(const AcquisitionRules& rules, const std::array<int, 4>& wi
 }
 }
 
+void AcquisitionRules::Describe(Properties& properties) const
+{
+  constexpr double largest = 1; // a video that is later than that is no live image
+  properties.Add("TimeOffset", this->TimeOffset, ValueRange::Between(-largest, largest, "s"))
+    .Add("HoldLastPose", this->HoldLastPose, ValueRange::Above(0, "s").OrZero("not held"))
+    .Add("CaptureMode", static_cast<int>(this->Mode), CaptureModeNames)
+    .Add("MovementThreshold", this->MovementThreshold, ValueRange::AtLeast(0, "mm"))
+    .Add("SpeedLimit", this->SpeedLimit, ValueRange::Above(0, "mm/s").OrZero("no limit"));
+}
+
 void CheckRules(const AcquisitionRules& rules)
 {
   const auto require = [](bool right, const char* text)
@@ -171,17 +180,12 @@ void CheckRules(const AcquisitionRules& rules)
       throw std::invalid_argument(text);
     }
   };
-  require(std::isfinite(rules.MovementThreshold) && rules.MovementThreshold >= 0,
-    "MovementThreshold is a distance in mm, 0 or more");
-  require(std::isfinite(rules.SpeedLimit) && rules.SpeedLimit >= 0,
-    "SpeedLimit is a speed in mm/s, or 0 for none");
-  require(std::abs(rules.TimeOffset) <= LargestOffset,
-    "TimeOffset is s from -1 to 1: a video that is later than that is no live image");
-  require(std::isfinite(rules.HoldLastPose) && rules.HoldLastPose >= 0,
-    "HoldLastPose is a time in s, or 0 to hold none");
+  Properties properties;
+  rules.Describe(properties);
+  properties
+    .Add("RecordCompression", rules.RecordCompressionLevel, AcquisitionRules::CompressionRange)
+    .Check();
   require(rules.MemoryLimit >= 0, "MemoryLimit is a size, or 0 for none");
-  require(rules.RecordCompressionLevel >= 0 && rules.RecordCompressionLevel <= 9,
-    "RecordCompression is 0 (none) to 9 (most)");
   const auto isAffine = [](const Matrix4& matrix)
   { return matrix.IsFinite() && matrix.IsAffine(); };
   require(!rules.ImageToProbe || isAffine(*rules.ImageToProbe),

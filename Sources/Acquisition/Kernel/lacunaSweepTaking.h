@@ -7,6 +7,7 @@
 #include "lacunaAcquiredSlice.h"
 #include "lacunaFramePairing.h"
 #include "lacunaMatrix4.h"
+#include "lacunaProperties.h"
 #include "lacunaSweepFile.h"
 
 #include <array>
@@ -23,6 +24,7 @@ enum class CaptureMode
   Movement,  ///< a frame is taken when an extreme point has moved since the last one that was taken
   EveryFrame ///< every frame is
 };
+inline constexpr std::array<const char*, 2> CaptureModeNames{ "Movement", "EveryFrame" };
 
 /// The corners of the field of view, mm in the receiver's coordinates: the outer corners of the
 /// pixels of a window that begins at (column, row) and has a size.
@@ -72,6 +74,8 @@ private:
 /// What may change while an acquisition runs.
 struct AcquisitionRules
 {
+  static constexpr ValueRange CompressionRange = ValueRange::Between(0, 9);
+
   CaptureMode Mode = CaptureMode::Movement;
   double MovementThreshold = 0.5; ///< mm
   double SpeedLimit = 23;         ///< mm/s (Carr 1996, ch. 2); 0: none
@@ -83,6 +87,9 @@ struct AcquisitionRules
   std::int64_t MemoryLimit = 0;   ///< bytes of pixels, taken or waiting for the disk; 0: none
   std::string RecordFileName;     ///< .mhd or .nhdr; empty: none. Used from the next sweep on
   int RecordCompressionLevel = 0; ///< 0 (none) to 9
+
+  /// Mode and the numbers before ImageToProbe, with their ranges.
+  void Describe(Properties& properties) const;
 };
 
 /// Throws std::invalid_argument for rules that cannot be.

@@ -4,6 +4,7 @@
 #ifndef lacunaVideoFields_h
 #define lacunaVideoFields_h
 
+#include <array>
 #include <cstdint>
 
 namespace lacuna
@@ -16,6 +17,7 @@ enum class VideoField
   Top,   ///< lines 0 2 4 ...; the others are the mean of their neighbours
   Bottom ///< lines 1 3 5 ...
 };
+inline constexpr std::array<const char*, 3> VideoFieldNames{ "Both", "Top", "Bottom" };
 
 /// Replaces the lines of the other field in an image of columns x rows, the top line first.
 void KeepField(VideoField field, std::int64_t columns, std::int64_t rows, std::uint8_t* grey);

@@ -39,6 +39,14 @@ TEST(Properties, SaysWhatAChoiceMayBe)
   }
 }
 
+TEST(Properties, LeavesOutChoicesWithoutAName)
+{
+  constexpr std::array<const char*, 3> rules{ "", "LeaveOut", "KeepOutliers" };
+  EXPECT_EQ(GetError(Properties().Add("BadPoses", 1, rules)), "");
+  EXPECT_EQ(GetError(Properties().Add("BadPoses", 0, rules)),
+    "BadPoses is 0; it must be 1 (LeaveOut) or 2 (KeepOutliers)");
+}
+
 TEST(Properties, SaysWhatANumberMayBe)
 {
   constexpr double infinity = std::numeric_limits<double>::infinity();

@@ -360,6 +360,7 @@ TEST(TrackerSelfTest, RefusesWhatCannotBe)
   refused("SpeedLimit", [](Pairs&, Options& options) { options.SpeedLimit = NoNumber; });
   refused("RevisitDistance", [](Pairs&, Options& options) { options.RevisitDistance = 0; });
   refused("RevisitAngle", [](Pairs&, Options& options) { options.RevisitAngle = NoNumber; });
+  refused("RevisitAngle", [](Pairs&, Options& options) { options.RevisitAngle = 181; });
   refused("RangeLimit", [](Pairs&, Options& options) { options.RangeLimit = 0; });
   refused("Accuracy", [](Pairs&, Options& options) { options.Accuracy.Angle = 0; });
 }

@@ -98,9 +98,9 @@ TEST(VolumeGrid, RefusesBadRequests)
   const std::vector<SliceImage> slices = MakeSlices({ 1, 7 });
   VolumeGridRequest request;
   request.Spacing = { 0.5, -0.5, 0.5 };
-  EXPECT_TRUE(Contains(GetError(slices, request), "OutputSpacing along y is -0.5 mm"));
+  EXPECT_TRUE(Contains(GetError(slices, request), "OutputSpacing is -0.5 mm"));
   request.Spacing = { 0.5, 0.5, std::nan("") };
-  EXPECT_TRUE(Contains(GetError(slices, request), "OutputSpacing along z"));
+  EXPECT_TRUE(Contains(GetError(slices, request), "OutputSpacing is nan mm"));
   request.Spacing = { 0.5, 0.5, 0.5 };
   request.Bounds = { 5, -5, 1, -1, 1, -1 };
   EXPECT_TRUE(Contains(GetError(slices, request), "give the minimum first"));

@@ -371,7 +371,7 @@ void TestConsumer()
   LACUNA_CHECK_THAT(volume->GetNumberOfSlicesAdded() == 7, "or taken by choice");
   std::ostringstream text;
   gate->Print(text);
-  LACUNA_CHECK_CONTAINS(text.str(), "GateType=Value");
+  LACUNA_CHECK_CONTAINS(text.str(), "GateType: Value (0 (Value), 1 (Phase) or 2 (Trigger))");
 }
 }
 

@@ -93,7 +93,7 @@ void TestContract()
     Contains(steps[0], "IsoValue=30 SolidSide=Above") && Contains(steps[0], "ViewUp=0,-1,0"));
   std::ostringstream text;
   caster->Print(text);
-  LACUNA_CHECK(Contains(text.str(), "ViewDirection=0,0,1"));
+  LACUNA_CHECK(Contains(text.str(), "ViewDirection: 0,0,1 (a finite number)"));
   LACUNA_CHECK(Contains(text.str(), "NumberOfCastSlices: 5"));
 
   // nothing in, nothing out
@@ -238,23 +238,25 @@ void TestErrors()
   const auto errors = [&](const std::function<void(Caster*)>& configure)
   { return GetMessages(good, configure).Errors; };
   LACUNA_CHECK_CONTAINS(
-    errors([](Caster* c) { c->SetIsoValue(NotANumber); }), "IsoValue is not a number");
+    errors([](Caster* c) { c->SetIsoValue(NotANumber); }), "it must be a finite number");
+  LACUNA_CHECK_CONTAINS(errors([](Caster* c) { c->SetMaximumGap(-1); }),
+    "MaximumGap is -1 mm; it must be 0 mm or more");
   LACUNA_CHECK_CONTAINS(
-    errors([](Caster* c) { c->SetMaximumGap(-1); }), "MaximumGap must be positive");
-  LACUNA_CHECK_CONTAINS(
-    errors([](Caster* c) { c->SetMaximumGap(NotANumber); }), "MaximumGap must be positive");
+    errors([](Caster* c) { c->SetMaximumGap(NotANumber); }), "MaximumGap is nan mm");
   LACUNA_CHECK_CONTAINS(
     errors([](Caster* c) { c->SetViewDirection(0, 0, 0); }), "the view direction (0, 0, 0)");
   LACUNA_CHECK_CONTAINS(errors([](Caster* c) { c->SetViewUp(0, 0, 2); }), "parallel");
   LACUNA_CHECK_CONTAINS(
-    errors([](Caster* c) { c->SetFocalPoint(0, NotANumber, 0); }), "focal point");
+    errors([](Caster* c) { c->SetFocalPoint(0, NotANumber, 0); }), "FocalPoint is nan mm");
   LACUNA_CHECK_CONTAINS(
-    errors([](Caster* c) { c->SetPlaneOrigin(0, NotANumber, 0); }), "plane origin");
+    errors([](Caster* c) { c->SetPlaneOrigin(0, NotANumber, 0); }), "PlaneOrigin is nan mm");
   LACUNA_CHECK_CONTAINS(errors([](Caster* c) { c->SetFocalPoint(VTK_DOUBLE_MAX, 0, 0); }),
     "only 2 coordinates are given");
-  LACUNA_CHECK_CONTAINS(errors([](Caster* c) { c->SetPixelSpacing(-0.5); }), "pixel spacing");
+  LACUNA_CHECK_CONTAINS(
+    errors([](Caster* c) { c->SetPixelSpacing(-0.5); }), "PixelSpacing is -0.5 mm");
   LACUNA_CHECK_CONTAINS(errors([](Caster* c) { c->SetPixelSpacing(1e-9); }), "too large");
-  LACUNA_CHECK_CONTAINS(errors([](Caster* c) { c->SetImageSize(-1, 4); }), "-1 x 4");
+  LACUNA_CHECK_CONTAINS(
+    errors([](Caster* c) { c->SetImageSize(-1, 4); }), "ImageSize is -1 pixels");
   LACUNA_CHECK_CONTAINS(
     errors([](Caster* c) { c->SetClipRectangle(12, 0, 0, 0); }), "1 columns of 0 to 12");
 

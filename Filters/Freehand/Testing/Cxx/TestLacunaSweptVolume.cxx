@@ -87,8 +87,8 @@ void TestContract()
 
   std::ostringstream text;
   filter->Print(text);
-  LACUNA_CHECK_THAT(
-    Contains(text.str(), "Compounding=Mean") && Contains(text.str(), "MemoryLimit: 4096"),
+  LACUNA_CHECK_THAT(Contains(text.str(), "Compounding: Mean (0 (Mean) or 1 (Maximum))") &&
+      Contains(text.str(), "MemoryLimit: 4096 (0 (no limit) or 1 MiB or more)"),
     "PrintSelf");
 }
 
@@ -243,10 +243,10 @@ void TestErrors()
   LACUNA_CHECK_CONTAINS(GetError(stack), "direction matrix");
 
   const auto with = [&](const Configure& configure) { return GetError(good, configure); };
+  LACUNA_CHECK_CONTAINS(with([](auto* f) { f->SetOutputSpacing(0.5, -1, 0.5); }),
+    "OutputSpacing is -1 mm; it must be 0 (automatic) or above 0 mm");
   LACUNA_CHECK_CONTAINS(
-    with([](auto* f) { f->SetOutputSpacing(0.5, -1, 0.5); }), "OutputSpacing along y");
-  LACUNA_CHECK_CONTAINS(
-    with([=](auto* f) { f->SetOutputSpacing(notANumber, 1, 1); }), "along x is nan");
+    with([=](auto* f) { f->SetOutputSpacing(notANumber, 1, 1); }), "OutputSpacing is nan mm");
   LACUNA_CHECK_CONTAINS(
     with([](auto* f) { f->SetOutputBounds(12, 11, 1, -1, 1, -1); }), "minimum first");
   LACUNA_CHECK_CONTAINS(
@@ -255,12 +255,15 @@ void TestErrors()
   LACUNA_CHECK_CONTAINS(
     with([](auto* f) { f->SetClipRectangle(13, 0, 2147483647, 0); }), "0 columns of 0 to 12");
   LACUNA_CHECK_CONTAINS(with([](auto* f) { f->SetClipRectangle(-1, 0, 5, 0); }),
-    "ClipRectangle is -1 0 5 0; first column, first row, width and height count pixels");
-  LACUNA_CHECK_CONTAINS(
-    with([](auto* f) { f->SetClipRectangle(0, 0, 0, -2147483647); }), "must not be negative");
+    "ClipRectangle is -1 pixels; it must be 0 (all) or 1 pixels or more");
+  LACUNA_CHECK_CONTAINS(with([](auto* f) { f->SetClipRectangle(0, 0, 0, -2147483647); }),
+    "ClipRectangle is -2147483647 pixels");
   // what lies beyond the right and lower edges does not matter
   LACUNA_CHECK(with([](auto* f) { f->SetClipRectangle(3, 2, 2147483647, 99); }).empty());
   LACUNA_CHECK_CONTAINS(with([](auto* f) { f->SetMaximumSliceGap(-1); }), "MaximumSliceGap");
+  LACUNA_CHECK_CONTAINS(with([](auto* f) { f->SetFanMask(3); }),
+    "FanMask is 3; it must be 0 (Given), 1 (Automatic) or 2 (None)");
+  LACUNA_CHECK_CONTAINS(with([](auto* f) { f->SetGapMethod(-1); }), "GapMethod is -1");
   LACUNA_CHECK_CONTAINS(with([](auto* f) { f->SetFootprintScale(0); }), "FootprintScale");
   LACUNA_CHECK_CONTAINS(with([=](auto* f) { f->SetFootprintScale(notANumber); }), "FootprintScale");
   for (const double tiny : { 1e-3, 1e-7, 1e-100, 1e-300 })
@@ -284,7 +287,8 @@ void TestErrors()
                           }),
     "this part of the volume would need");
 
-  LACUNA_CHECK_CONTAINS(with([](auto* f) { f->SetMemoryLimit(-1); }), "MemoryLimit is -1; give 0");
+  LACUNA_CHECK_CONTAINS(with([](auto* f) { f->SetMemoryLimit(-1); }),
+    "MemoryLimit is -1 MiB; it must be 0 (no limit) or 1 MiB or more");
 
   // what fits in one voxel is not called flat
   for (const double huge : { 1e7, 1e300 })

@@ -153,7 +153,7 @@ void TestErrors(vtkImageData* slices)
   LACUNA_CHECK_CONTAINS(Calibrate(slices, 0.05).Errors, "raise MaximumLag");
   for (const double wrong : { 0.0, -1.0, 2.5, NoNumber })
   {
-    LACUNA_CHECK_CONTAINS(Calibrate(slices, wrong).Errors, "MaximumLag must be");
+    LACUNA_CHECK_CONTAINS(Calibrate(slices, wrong).Errors, "it must be above 0 and at most 2 s");
   }
 }
 }
@@ -166,6 +166,6 @@ int TestLacunaTemporalCalibration(int, char*[])
   vtkNew<vtkLacunaTemporalCalibration> filter;
   std::ostringstream text;
   filter->Print(text);
-  LACUNA_CHECK_CONTAINS(text.str(), "MaximumLag: 0.5");
+  LACUNA_CHECK_CONTAINS(text.str(), "MaximumLag: 0.5 (above 0 and at most 2 s)");
   return lacunaCheck::Result();
 }

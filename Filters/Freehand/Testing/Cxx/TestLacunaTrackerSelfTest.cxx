@@ -364,6 +364,6 @@ int TestLacunaTrackerSelfTest(int, char*[])
   vtkNew<vtkLacunaTrackerSelfTest> filter;
   std::ostringstream text;
   filter->Print(text);
-  LACUNA_CHECK_CONTAINS(text.str(), "RangeLimit=760");
+  LACUNA_CHECK_CONTAINS(text.str(), "RangeLimit: 760 (above 0 mm)");
   return lacunaCheck::Result();
 }

@@ -420,9 +420,9 @@ void TestErrors()
 {
   auto stack = MakeStack(3);
   LACUNA_CHECK_CONTAINS(
-    GetError(stack, [](auto* f) { f->SetStride(0); }), "Stride is 0; give 1 or more");
+    GetError(stack, [](auto* f) { f->SetStride(0); }), "Stride is 0; it must be 1 or more");
   LACUNA_CHECK_CONTAINS(GetError(stack, [](auto* f) { f->SetMaximumNumberOfPoints(-1); }),
-    "MaximumNumberOfPoints is -1; give 4 or more");
+    "MaximumNumberOfPoints is -1; it must be 4 or more");
   stack->GetFieldData()->RemoveArray("ImageToReference");
   LACUNA_CHECK_CONTAINS(GetError(stack), "not calibrated");
 
@@ -439,12 +439,15 @@ void TestErrors()
   LACUNA_CHECK_CONTAINS(
     GetError(stack, [](auto* f) { f->SetColorBy(vtkLacunaSlicePlanes::Speed); }),
     "'Timestamp' is missing");
+  LACUNA_CHECK_CONTAINS(GetError(MakeStack(3), [](auto* f) { f->SetTranslationAccuracy(-1); }),
+    "TranslationAccuracy is -1 mm; it must be 0 mm or more");
   LACUNA_CHECK_CONTAINS(
-    GetError(MakeStack(3), [](auto* f) { f->SetTranslationAccuracy(-1); }), "0 or more");
+    GetError(MakeStack(3), [](auto* f) { f->SetBadPoses(vtkLacunaSliceAlgorithm::Refuse); }),
+    "BadPoses is 0; it must be 1 (LeaveOut) or 2 (KeepOutliers)");
   LACUNA_CHECK_CONTAINS(
     GetError(MakeStack(3),
       [](auto* f) { f->SetAngularAccuracy(std::numeric_limits<double>::quiet_NaN()); }),
-    "0 or more");
+    "AngularAccuracy is nan degrees; it must be 0 degrees or more");
   for (const double limit : { -1.0, std::numeric_limits<double>::quiet_NaN() })
   {
     LACUNA_CHECK_CONTAINS(

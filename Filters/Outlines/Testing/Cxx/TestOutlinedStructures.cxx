@@ -209,7 +209,7 @@ void TestBadInput()
     return messages->Errors + "|" + messages->Warnings;
   };
   const auto lines = MakeOutlines({ gland });
-  LACUNA_CHECK_CONTAINS(run(lines, -1), "RegistrationError is -1; it must be a finite number");
+  LACUNA_CHECK_CONTAINS(run(lines, -1), "RegistrationError is -1 mm; it must be 0 mm or more");
   vtkNew<vtkPolyData> points;
   points->SetPoints(lines->GetPoints());
   LACUNA_CHECK_CONTAINS(run(points, 0), "no lines");

@@ -19,7 +19,7 @@ std::string ErrorOf(const std::vector<CTFrame>& frames, const CTGeometryOptions&
   {
     FindCTGeometry(frames, options);
   }
-  catch (const std::runtime_error& e)
+  catch (const std::exception& e)
   {
     return e.what();
   }
@@ -165,7 +165,7 @@ TEST(CTGeometry, ToleranceBeyondSpacing)
   for (const double bad : { 0.0, -1.0, 1e-7, 11.0, HUGE_VAL, std::nan("") })
   {
     options.PositionTolerance = bad;
-    EXPECT_TRUE(Has(ErrorOf(MakeFrames(positions), options), "it must be from 1e-6 to 10 mm"));
+    EXPECT_TRUE(Has(ErrorOf(MakeFrames(positions), options), "it must be from 1e-06 to 10 mm"));
   }
 }
 

@@ -105,7 +105,7 @@ void TestTilted()
     LACUNA_CHECK_THAT(inside > 0.6 * series.Columns * series.Rows * series.Slices, name);
     LACUNA_CHECK_CONTAINS(test.GetNotes(), "degrees");
 
-    test.Reader->SetGantryTilt(vtkLacunaCTSeriesReader::GANTRY_TILT_REFUSE);
+    test.Reader->SetGantryTilt(vtkLacunaCTSeriesReader::Refuse);
     test.ExpectError("set GantryTilt to Correct");
   }
 }

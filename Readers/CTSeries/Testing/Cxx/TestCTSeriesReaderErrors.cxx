@@ -140,6 +140,13 @@ void TestProperties()
     test.Reader->SetPositionTolerance(tolerance);
     test.ExpectError("PositionTolerance is ");
   }
+  test.Reader->SetPositionTolerance(0.05);
+  test.Reader->SetMissingSlices(2);
+  test.ExpectError("MissingSlices is 2; it must be 0 (Error) or 1 (Interpolate)");
+  test.Reader->SetMissingSlices(vtkLacunaCTSeriesReader::Error);
+  test.Reader->SetAcquisition(-2);
+  test.ExpectError("Acquisition is -2; it must be -1 or more");
+  test.Reader->SetAcquisition(-1);
   test.Reader->SetPositionTolerance(3); // more than the distance of slices
   test.ExpectGood();
   LACUNA_CHECK(test.Reader->GetOutput()->GetDimensions()[2] == 6);
@@ -189,13 +196,13 @@ void TestInformation()
   LACUNA_CHECK_THAT(test.Errors.empty(), test.Errors);
   LACUNA_CHECK(test.Reader->GetErrorCode() == vtkErrorCode::FileFormatError);
   LACUNA_CHECK_CONTAINS(test.GetSeriesList(), "6 images of 44 x 36");
-  test.Reader->SetMissingSlices(vtkLacunaCTSeriesReader::MISSING_SLICES_INTERPOLATE);
+  test.Reader->SetMissingSlices(vtkLacunaCTSeriesReader::Interpolate);
   test.ExpectGood();
-  test.Reader->SetMissingSlices(vtkLacunaCTSeriesReader::MISSING_SLICES_ERROR);
+  test.Reader->SetMissingSlices(vtkLacunaCTSeriesReader::Error);
   test.Reader->UpdateInformation();
   test.ExpectError("1 slice is missing");
   test.ExpectError("1 slice is missing"); // again, not an empty volume in silence
-  test.Reader->SetMissingSlices(vtkLacunaCTSeriesReader::MISSING_SLICES_INTERPOLATE);
+  test.Reader->SetMissingSlices(vtkLacunaCTSeriesReader::Interpolate);
   test.ExpectGood();
 }
 
@@ -403,7 +410,7 @@ void TestGaps()
   ReaderOf test(series);
   test.ExpectError("3 slices are missing at -10 mm, 0 mm, 2 mm along the slice normal");
   LACUNA_CHECK_CONTAINS(test.Errors, "set MissingSlices to Interpolate");
-  test.Reader->SetMissingSlices(vtkLacunaCTSeriesReader::MISSING_SLICES_INTERPOLATE);
+  test.Reader->SetMissingSlices(vtkLacunaCTSeriesReader::Interpolate);
   test.ExpectGood();
   vtkImageData* image = test.Reader->GetOutput();
   LACUNA_CHECK(image->GetDimensions()[2] == 13);
@@ -439,7 +446,7 @@ void TestUnequal()
   LACUNA_CHECK_CONTAINS(test.Errors,
     BaseName(test.Files[3]) + " at -10 mm and " + BaseName(test.Files[4]) +
       " at -7.4 mm, 1.4 mm between ");
-  test.Reader->SetMissingSlices(vtkLacunaCTSeriesReader::MISSING_SLICES_INTERPOLATE);
+  test.Reader->SetMissingSlices(vtkLacunaCTSeriesReader::Interpolate);
   test.ExpectGood();
   vtkDataArray* planes = test.Reader->GetOutput()->GetFieldData()->GetArray("InterpolatedSlices");
   LACUNA_CHECK(planes && planes->GetNumberOfTuples() == 1 && planes->GetTuple1(0) == 4);
@@ -475,7 +482,7 @@ void TestUnequalKeepsAll()
     series.Stored = [](int i, int j, int k) { return k == 7 ? 3000 + i : 100 * k + j; };
     ReaderOf test(series);
     test.ExpectError("the slices are not equally spaced");
-    test.Reader->SetMissingSlices(vtkLacunaCTSeriesReader::MISSING_SLICES_INTERPOLATE);
+    test.Reader->SetMissingSlices(vtkLacunaCTSeriesReader::Interpolate);
     test.ExpectGood();
     LACUNA_CHECK_THAT(test.Warnings.empty(), test.Warnings);
     LACUNA_CHECK_CONTAINS(test.GetNotes(), "8 of 8 measured slices are planes of their own");

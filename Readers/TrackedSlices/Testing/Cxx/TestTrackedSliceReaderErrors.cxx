@@ -47,10 +47,11 @@ void TestFiles()
   ExpectError(missing, vtkErrorCode::NoFileNameError, "FileName is not set");
   missing.Reader->SetFileName(missing.File.GetPath().c_str());
   missing.Reader->SetFrameStride(0);
-  ExpectError(missing, vtkErrorCode::FileFormatError, "FrameStride is 0; give 1 or more");
+  ExpectError(missing, vtkErrorCode::FileFormatError, "FrameStride is 0; it must be 1 or more");
   missing.Reader->SetFrameStride(1);
   missing.Reader->SetMemoryLimit(-1);
-  ExpectError(missing, vtkErrorCode::FileFormatError, "MemoryLimit is -1; give 0 or more");
+  ExpectError(
+    missing, vtkErrorCode::FileFormatError, "MemoryLimit is -1 MiB; it must be 0 MiB or more");
   missing.Reader->SetMemoryLimit(0);
   missing.Forget();
   missing.Reader->Update(); // recovers

@@ -151,8 +151,6 @@ void TestDefaults()
   LACUNA_CHECK(writer->GetCompressionLevel() == 1);
   LACUNA_CHECK(writer->GetFileSize() == 0);
   LACUNA_CHECK(!writer->GetKeepPatientIdentity());
-  writer->SetCompressionLevel(17);
-  LACUNA_CHECK(writer->GetCompressionLevel() == 9);
   std::ostringstream text;
   writer->Print(text);
   for (const char* name : { "FileName", "CompressionLevel", "KeepPatientIdentity", "FileSize" })
@@ -534,6 +532,11 @@ void TestErrors()
   expect(input, "", vtkErrorCode::NoFileNameError, "no FileName");
   expect(input, Beside(test, "a.vti"), vtkErrorCode::UnknownError, "must end in .mha, .mhd");
   expect(input, Beside(test, "no/a.mha"), vtkErrorCode::CannotOpenFileError, "No such file");
+  WriterOf pressed(input, Beside(test, "a.mha"));
+  pressed.Writer->SetCompressionLevel(10);
+  LACUNA_CHECK(pressed.Writer->Write() == 0);
+  LACUNA_CHECK_CONTAINS(pressed.Errors, "CompressionLevel is 10; it must be from 0 to 9");
+  LACUNA_CHECK(!std::filesystem::exists(Beside(test, "a.mha")));
   if (std::filesystem::exists("/dev/full"))
   {
     std::filesystem::create_symlink("/dev/full", Beside(test, "full.mha"));

@@ -227,9 +227,9 @@ void TestNiftiErrors()
     ExpectError(test, "ct.nii: ");
   }
   test.Change(good);
-  test.Reader->SetNIfTITransform(vtkLacunaVolumeReader::NIFTI_QFORM);
+  test.Reader->SetNIfTITransform(vtkLacunaVolumeReader::QForm);
   ExpectError(test, "qform_code is 0");
-  test.Reader->SetNIfTITransform(vtkLacunaVolumeReader::NIFTI_SFORM);
+  test.Reader->SetNIfTITransform(vtkLacunaVolumeReader::SForm);
   CheckVoxels(test.Update(), -1024);
 
   const std::string packed = Gzip(good);

@@ -419,7 +419,7 @@ void TestFormats()
   Bench bench([](double, int) { return Still; });
   vtkLacunaPolhemusVideoSource* source = bench.Source;
   for (const int format :
-    { vtkLacunaPolhemusVideoSource::ASCII, vtkLacunaPolhemusVideoSource::Binary })
+    { vtkLacunaPolhemusVideoSource::Ascii, vtkLacunaPolhemusVideoSource::Binary })
   {
     for (const int unit :
       { vtkLacunaPolhemusVideoSource::Inch, vtkLacunaPolhemusVideoSource::Centimetre })
@@ -427,7 +427,7 @@ void TestFormats()
       source->SetRecordFormat(format);
       source->SetRecordUnit(unit);
       source->SetFiltersOff(unit == vtkLacunaPolhemusVideoSource::Inch);
-      source->SetTrackerReset(format == vtkLacunaPolhemusVideoSource::ASCII
+      source->SetTrackerReset(format == vtkLacunaPolhemusVideoSource::Ascii
           ? vtkLacunaPolhemusVideoSource::Factory
           : vtkLacunaPolhemusVideoSource::Frames);
       source->Clear();
@@ -476,7 +476,7 @@ void TestSettingsReachTheTracker()
     std::function<void(Source*)> Set;
   };
   const std::vector<Case> cases{ { "", [](Source*) {} },
-    { "F", [](Source* source) { source->SetRecordFormat(Source::ASCII); } },
+    { "F", [](Source* source) { source->SetRecordFormat(Source::Ascii); } },
     { "U", [](Source* source) { source->SetRecordUnit(Source::Inch); } },
     { "W", [](Source* source) { source->SetTrackerReset(Source::Factory); } },
     { "x", [](Source* source) { source->SetFiltersOff(true); } },

@@ -52,8 +52,8 @@ void TestDormant()
   LACUNA_CHECK(source->GetDiskSpace() != source->GetDiskSpace());
   std::ostringstream text;
   source->Print(text);
-  LACUNA_CHECK_CONTAINS(text.str(), "BaudRate=115200");
-  LACUNA_CHECK_CONTAINS(text.str(), "SpeedLimit=23");
+  LACUNA_CHECK_CONTAINS(text.str(), "BaudRate: 115200 (from 2400 to 115200)");
+  LACUNA_CHECK_CONTAINS(text.str(), "SpeedLimit: 23 (0 (no limit) or above 0 mm/s)");
 }
 
 void TestNothingSet()
@@ -93,7 +93,8 @@ void TestSettings()
   refuses([](auto* source) { source->SetSpeedLimit(-1); }, "SpeedLimit");
   refuses([](auto* source) { source->SetTimeOffset(3); }, "TimeOffset");
   refuses([](auto* source) { source->SetHoldLastPose(-1); }, "HoldLastPose");
-  refuses([](auto* source) { source->SetCropRectangle(-1, 0, 0, 0); }, "crop");
+  refuses(
+    [](auto* source) { source->SetCropRectangle(-1, 0, 0, 0); }, "CropRectangle is -1 pixels");
   refuses([](auto* source) { source->SetRecordFileName("sweep.mha"); }, ".mhd or .nhdr");
   refuses([](auto* source) { source->SetCalibrationFileName("/none.xml"); }, "/none.xml");
 
@@ -111,7 +112,11 @@ void TestSettings()
   source->Update();
   LACUNA_CHECK(messages->Errors.empty());
   LACUNA_CHECK(std::string(source->GetMessage()).find("TimeOffset") == std::string::npos);
-  source->SetStation(7); // the tracker's own complaint
+  source->SetStation(7);
+  source->Update();
+  LACUNA_CHECK(messages->HasError("Station is 7; it must be from 1 to 4"));
+  CheckMessage(source, "Station is 7");
+  source->SetStation(1);
   source->SetTrackerConnection("/dev/ttyLacunaNone");
   source->Update();
   CheckMessage(source, "There is no port /dev/ttyLacunaNone");
