@@ -488,15 +488,6 @@ int vtkLacunaSkullBone::FillInputPortInformation(int port, vtkInformation* info)
 //------------------------------------------------------------------------------
 vtkDataArray* vtkLacunaSkullBone::GetCheckedScalars(vtkImageData* input) const
 {
-  if (!std::isfinite(this->Level))
-  {
-    throw std::runtime_error("Level must be a finite number");
-  }
-  if (!(this->BridgeDiameter >= 0 && this->BridgeDiameter <= MostBridge))
-  {
-    throw std::runtime_error("BridgeDiameter is " + lacuna::FormatNumber(this->BridgeDiameter) +
-      " mm; it must be between 0 and 20");
-  }
   lacuna::TrackedSlices::Refuse(input);
   lacuna::VolumeDirection::Check(input);
   vtkDataArray* scalars = input->GetPointData()->GetScalars();
@@ -566,18 +557,10 @@ void vtkLacunaSkullBone::Make(const lacuna::Ports& ports, lacuna::AlgorithmExecu
 }
 
 //------------------------------------------------------------------------------
-std::string vtkLacunaSkullBone::Parameters(int) const
+void vtkLacunaSkullBone::Describe(lacuna::Properties& properties) const
 {
-  return lacuna::ParameterText()
-    .Add("Level", this->Level)
-    .Add("BridgeDiameter", this->BridgeDiameter)
-    .Get();
-}
-
-//------------------------------------------------------------------------------
-void vtkLacunaSkullBone::PrintSelf(ostream& os, vtkIndent indent)
-{
-  this->Superclass::PrintSelf(os, indent);
-  os << indent << "Level: " << this->Level << "\n";
-  os << indent << "BridgeDiameter: " << this->BridgeDiameter << "\n";
+  using lacuna::ValueRange;
+  properties.Add("Level", this->Level, ValueRange::Any("HU"))
+    .Add("BridgeDiameter", this->BridgeDiameter,
+      ValueRange::Above(0, "mm").UpTo(MostBridge).OrZero("none"));
 }

@@ -42,7 +42,6 @@ class VTKLACUNAFILTERSCRANIOPLASTY_EXPORT vtkLacunaSkullBone
 public:
   static vtkLacunaSkullBone* New();
   vtkTypeMacro(vtkLacunaSkullBone, vtkImageAlgorithm);
-  void PrintSelf(ostream& os, vtkIndent indent) override;
 
   static constexpr double Gap = 3;         ///< mm between the middles of voxels
   static constexpr double SmallPart = 1;   ///< ml
@@ -72,12 +71,12 @@ protected:
   ~vtkLacunaSkullBone() override = default;
   int FillInputPortInformation(int port, vtkInformation* info) override;
   void Make(const lacuna::Ports& ports, lacuna::AlgorithmExecution& execution) override;
-  std::string Parameters(int port) const override;
+  void Describe(lacuna::Properties& properties) const override;
 
 private:
   vtkLacunaSkullBone(const vtkLacunaSkullBone&) = delete;
   void operator=(const vtkLacunaSkullBone&) = delete;
-  // Throws for any property and any image that is not possible.
+  // Throws for any image that is not possible.
   vtkDataArray* GetCheckedScalars(vtkImageData* input) const;
 
   double Level = 300;

@@ -25,7 +25,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <memory>
@@ -44,6 +43,7 @@ using lacuna::NameOf;
 using lacuna::Rounded;
 using lacuna::Vec3;
 
+constexpr std::array<const char*, 2> DefectChoiceNames{ "Largest", "Nearest to Point" };
 constexpr double RaySpacing = 2;    // mm at 90 mm
 constexpr double Seen = 10;         // mm, the farthest bone that shows what a place is like
 constexpr double MostDistance = 30; // mm of Point from a hole
@@ -426,21 +426,6 @@ int vtkLacunaSkullImplant::FillInputPortInformation(int port, vtkInformation* in
 //------------------------------------------------------------------------------
 lacuna::SkullImplantOptions vtkLacunaSkullImplant::GetOptions() const
 {
-  if (!(this->Level > 0) || !std::isfinite(this->Level))
-  {
-    throw std::runtime_error("Level is " + lacuna::FormatNumber(this->Level) +
-      "; it must be a number above 0, the grey level of bone");
-  }
-  if (this->DefectChoice != Largest && this->DefectChoice != NearestToPoint)
-  {
-    throw std::runtime_error("DefectChoice is " + std::to_string(this->DefectChoice) +
-      "; it must be 0 (Largest) or 1 (Nearest to Point)");
-  }
-  if (!(this->Density > 0 && std::isfinite(this->Density)))
-  {
-    throw std::runtime_error("Density is " + lacuna::FormatNumber(this->Density) +
-      "; it must be a number of g/cm^3 above 0");
-  }
   lacuna::SkullImplantOptions options;
   options.Level = this->Level;
   options.EdgeClearance = this->EdgeClearance;
@@ -460,18 +445,6 @@ lacuna::SkullImplantOptions vtkLacunaSkullImplant::GetOptions() const
   options.ScrewDiameter = this->ScrewDiameter;
   options.ScrewLength = this->ScrewLength;
   options.RimDistance = this->RimDistance;
-  if (!(this->TextHeight >= 2 && this->TextHeight <= 20))
-  {
-    throw std::runtime_error("TextHeight is " + lacuna::FormatNumber(this->TextHeight) +
-      " mm; it must be between 2 and 20");
-  }
-  options.Text = lacuna::GetTextOutlines(this->EngravedText, this->TextHeight);
-  CheckSkullImplantOptions(options);
-  if (!(this->TemplateLevel >= 0) || !std::isfinite(this->TemplateLevel))
-  {
-    throw std::runtime_error("TemplateLevel is " + lacuna::FormatNumber(this->TemplateLevel) +
-      "; it must be a number above 0, the grey level of the template's bone, or 0 for Level");
-  }
   return options;
 }
 
@@ -482,7 +455,9 @@ void vtkLacunaSkullImplant::Make(const lacuna::Ports& ports, lacuna::AlgorithmEx
   auto* other = ports.GetInput<vtkDataSet>(2);
   const bool isDrawn = outline && outline->GetNumberOfPoints() > 0;
   const bool hasTemplate = other && other->GetNumberOfPoints() > 0;
-  const lacuna::SkullImplantOptions options = this->GetOptions();
+  lacuna::SkullImplantOptions options = this->GetOptions();
+  options.Text = lacuna::GetTextOutlines(this->EngravedText, this->TextHeight);
+  CheckSkullImplantOptions(options);
   vtkSmartPointer<vtkDataArray> keep;
   const lacuna::VoxelVolume volume = lacuna::GetBoneVolume(ports.GetInput<vtkImageData>(), keep);
 
@@ -553,65 +528,15 @@ void vtkLacunaSkullImplant::Make(const lacuna::Ports& ports, lacuna::AlgorithmEx
 }
 
 //------------------------------------------------------------------------------
-std::string vtkLacunaSkullImplant::Parameters(int) const
+void vtkLacunaSkullImplant::Describe(lacuna::Properties& properties) const
 {
-  return lacuna::ParameterText()
-    .Add("Level", this->Level)
-    .Add("DefectChoice", this->DefectChoice)
-    .Add("Point", std::vector<double>(this->Point, this->Point + 3))
-    .Add("EdgeClearance", this->EdgeClearance)
-    .Add("Thickness", this->Thickness)
-    .Add("MinimumThickness", this->MinimumThickness)
-    .Add("InsertionDirection",
-      std::vector<double>(this->InsertionDirection, this->InsertionDirection + 3))
-    .Add("OuterOffset", this->OuterOffset)
-    .Add("InnerOffset", this->InnerOffset)
-    .Add("OffsetFade", this->OffsetFade)
-    .Add("Parts", this->Parts)
-    .Add("DrainageSpacing", this->DrainageSpacing)
-    .Add("DrainageDiameter", this->DrainageDiameter)
-    .Add("SutureSpacing", this->SutureSpacing)
-    .Add("SutureDiameter", this->SutureDiameter)
-    .Add("Plates", this->Plates)
-    .Add("ScrewDiameter", this->ScrewDiameter)
-    .Add("ScrewLength", this->ScrewLength)
-    .Add("RimDistance", this->RimDistance)
-    .Add("EngravedText", this->EngravedText)
-    .Add("TextHeight", this->TextHeight)
-    .Add("TriangleSize", this->TriangleSize)
-    .Add("Density", this->Density)
-    .Add("TemplateLevel", this->TemplateLevel)
-    .Get();
-}
-
-//------------------------------------------------------------------------------
-void vtkLacunaSkullImplant::PrintSelf(ostream& os, vtkIndent indent)
-{
-  this->Superclass::PrintSelf(os, indent);
-  os << indent << "Level: " << this->Level << "\n";
-  os << indent << "DefectChoice: " << this->DefectChoice << "\n";
-  os << indent << "Point: " << this->Point[0] << " " << this->Point[1] << " " << this->Point[2]
-     << "\n";
-  os << indent << "EdgeClearance: " << this->EdgeClearance << "\n";
-  os << indent << "Thickness: " << this->Thickness << "\n";
-  os << indent << "MinimumThickness: " << this->MinimumThickness << "\n";
-  os << indent << "InsertionDirection: " << this->InsertionDirection[0] << " "
-     << this->InsertionDirection[1] << " " << this->InsertionDirection[2] << "\n";
-  os << indent << "OuterOffset: " << this->OuterOffset << "\n";
-  os << indent << "InnerOffset: " << this->InnerOffset << "\n";
-  os << indent << "OffsetFade: " << this->OffsetFade << "\n";
-  os << indent << "Parts: " << this->Parts << "\n";
-  os << indent << "DrainageSpacing: " << this->DrainageSpacing << "\n";
-  os << indent << "DrainageDiameter: " << this->DrainageDiameter << "\n";
-  os << indent << "SutureSpacing: " << this->SutureSpacing << "\n";
-  os << indent << "SutureDiameter: " << this->SutureDiameter << "\n";
-  os << indent << "Plates: " << this->Plates << "\n";
-  os << indent << "ScrewDiameter: " << this->ScrewDiameter << "\n";
-  os << indent << "ScrewLength: " << this->ScrewLength << "\n";
-  os << indent << "RimDistance: " << this->RimDistance << "\n";
-  os << indent << "EngravedText: " << this->EngravedText << "\n";
-  os << indent << "TextHeight: " << this->TextHeight << "\n";
-  os << indent << "TriangleSize: " << this->TriangleSize << "\n";
-  os << indent << "Density: " << this->Density << "\n";
-  os << indent << "TemplateLevel: " << this->TemplateLevel << "\n";
+  using lacuna::ValueRange;
+  properties.Add("Level", this->Level, ValueRange::Above(0, "HU"))
+    .Add("DefectChoice", this->DefectChoice, DefectChoiceNames)
+    .Add("Point", this->Point, ValueRange::Any("mm"));
+  this->GetOptions().Describe(properties);
+  properties.Add("EngravedText", this->EngravedText)
+    .Add("TextHeight", this->TextHeight, ValueRange::Between(2, 20, "mm"))
+    .Add("Density", this->Density, ValueRange::Above(0, "g/cm\u00b3"))
+    .Add("TemplateLevel", this->TemplateLevel, ValueRange::Above(0, "HU").OrZero("as Level"));
 }

@@ -78,7 +78,6 @@ class VTKLACUNAFILTERSCRANIOPLASTY_EXPORT vtkLacunaSkullImplant
 public:
   static vtkLacunaSkullImplant* New();
   vtkTypeMacro(vtkLacunaSkullImplant, vtkPolyDataAlgorithm);
-  void PrintSelf(ostream& os, vtkIndent indent) override;
 
   enum DefectChoiceType
   {
@@ -218,13 +217,12 @@ protected:
   ~vtkLacunaSkullImplant() override = default;
   int FillInputPortInformation(int port, vtkInformation* info) override;
   void Make(const lacuna::Ports& ports, lacuna::AlgorithmExecution& execution) override;
-  std::string Parameters(int port) const override;
+  void Describe(lacuna::Properties& properties) const override;
 
 private:
   vtkLacunaSkullImplant(const vtkLacunaSkullImplant&) = delete;
   void operator=(const vtkLacunaSkullImplant&) = delete;
-  // Throws for any property that is not possible.
-  lacuna::SkullImplantOptions GetOptions() const;
+  lacuna::SkullImplantOptions GetOptions() const; // without the text
 
   double Level = 300;
   int DefectChoice = Largest;

@@ -5,7 +5,6 @@
 #include "lacunaFieldData.h"
 #include "lacunaImplantData.h"
 #include "lacunaMemory.h"
-#include "lacunaParameterText.h"
 #include "lacunaSkullRays.h"
 #include "lacunaSkullResection.h"
 #include "lacunaSkullShells.h"
@@ -206,18 +205,11 @@ void vtkLacunaSkullResection::Make(
   auto* image = ports.GetInput<vtkImageData>();
   auto* outline = ports.GetInput<vtkPolyData>(1);
   auto* tumour = ports.GetInput<vtkDataSet>(2);
-  if (!(this->Level > 0) || !std::isfinite(this->Level))
+  lacuna::ResectionOptions options = this->GetOptions();
+  if (this->GuideWidth == 0)
   {
-    throw std::runtime_error("Level is " + lacuna::FormatNumber(this->Level) +
-      "; it must be a number above 0, the grey level of bone");
+    options.GuideWidth = lacuna::ResectionOptions().GuideWidth;
   }
-  lacuna::ResectionOptions options;
-  options.Level = this->Level;
-  options.Bevel = this->Bevel;
-  options.GuideWidth = this->GuideWidth == 0 ? options.GuideWidth : this->GuideWidth;
-  options.GuideHeight = this->GuideHeight;
-  options.GuideClearance = this->GuideClearance;
-  options.GuideHole = this->GuideHole;
   CheckResectionOptions(options);
   const bool isDrawn = outline && outline->GetNumberOfPoints() > 0;
   const bool hasTumour = tumour && tumour->GetNumberOfPoints() > 0;
@@ -272,28 +264,22 @@ std::vector<vtkDataObject*> vtkLacunaSkullResection::GetOrigins(const lacuna::Po
 }
 
 //------------------------------------------------------------------------------
-std::string vtkLacunaSkullResection::Parameters(int) const
+lacuna::ResectionOptions vtkLacunaSkullResection::GetOptions() const
 {
-  return lacuna::ParameterText()
-    .Add("Level", this->Level)
-    .Add("Margin", this->Margin)
-    .Add("Bevel", this->Bevel)
-    .Add("GuideWidth", this->GuideWidth)
-    .Add("GuideHeight", this->GuideHeight)
-    .Add("GuideClearance", this->GuideClearance)
-    .Add("GuideHole", this->GuideHole)
-    .Get();
+  lacuna::ResectionOptions options;
+  options.Level = this->Level;
+  options.Bevel = this->Bevel;
+  options.GuideWidth = this->GuideWidth;
+  options.GuideHeight = this->GuideHeight;
+  options.GuideClearance = this->GuideClearance;
+  options.GuideHole = this->GuideHole;
+  return options;
 }
 
 //------------------------------------------------------------------------------
-void vtkLacunaSkullResection::PrintSelf(ostream& os, vtkIndent indent)
+void vtkLacunaSkullResection::Describe(lacuna::Properties& properties) const
 {
-  this->Superclass::PrintSelf(os, indent);
-  os << indent << "Level: " << this->Level << "\n";
-  os << indent << "Margin: " << this->Margin << "\n";
-  os << indent << "Bevel: " << this->Bevel << "\n";
-  os << indent << "GuideWidth: " << this->GuideWidth << "\n";
-  os << indent << "GuideHeight: " << this->GuideHeight << "\n";
-  os << indent << "GuideClearance: " << this->GuideClearance << "\n";
-  os << indent << "GuideHole: " << this->GuideHole << "\n";
+  properties.Add("Level", this->Level, lacuna::ValueRange::Above(0, "HU"))
+    .Add("Margin", this->Margin, lacuna::ResectionMargins);
+  this->GetOptions().Describe(properties);
 }

@@ -40,6 +40,7 @@ namespace lacuna
 {
 class Execution;
 class SkullResection;
+struct ResectionOptions;
 struct VoxelVolume;
 }
 
@@ -49,7 +50,6 @@ class VTKLACUNAFILTERSCRANIOPLASTY_EXPORT vtkLacunaSkullResection
 public:
   static vtkLacunaSkullResection* New();
   vtkTypeMacro(vtkLacunaSkullResection, vtkImageAlgorithm);
-  void PrintSelf(ostream& os, vtkIndent indent) override;
 
   ///@{
   /** Grey level of bone, in the units of the scalars. Default 300 (Hounsfield units). */
@@ -98,12 +98,13 @@ protected:
   int FillInputPortInformation(int port, vtkInformation* info) override;
   int FillOutputPortInformation(int port, vtkInformation* info) override;
   void Make(const lacuna::Ports& ports, lacuna::AlgorithmExecution& execution) override;
-  std::string Parameters(int port) const override;
+  void Describe(lacuna::Properties& properties) const override;
   std::vector<vtkDataObject*> GetOrigins(const lacuna::Ports& ports) const override;
 
 private:
   vtkLacunaSkullResection(const vtkLacunaSkullResection&) = delete;
   void operator=(const vtkLacunaSkullResection&) = delete;
+  lacuna::ResectionOptions GetOptions() const;
   void MakeMeshes(const lacuna::VoxelVolume& volume, vtkDataArray* alone,
     const lacuna::SkullResection& cut, const lacuna::Ports& ports, lacuna::Execution& execution);
 

@@ -125,20 +125,23 @@ std::vector<Path> FindPaths(vtkPolyData* data)
 }
 
 //------------------------------------------------------------------------------
+void lacuna::CADContent::Options::Describe(lacuna::Properties& properties) const
+{
+  this->Fit.Describe(properties);
+  properties.Add("DefectOutline", this->Outline, OutlineNames)
+    .Add("Coordinates", this->Frame, FrameNames)
+    .Add("AllowMirrored", this->AllowMirrored)
+    .Add("SkipUnsupported", this->SkipUnsupported);
+}
+
+//------------------------------------------------------------------------------
 lacuna::CADContent::CADContent(
   vtkDataObject* input, const Options& options, lacuna::Execution& execution)
   : Settings(options)
 {
-  if (options.Outline < NoOutline || options.Outline > TrimToOutline)
-  {
-    throw std::runtime_error("DefectOutline is " + std::to_string(options.Outline) +
-      "; it must be 0 (None), 1 (Curve) or 2 (Trim)");
-  }
-  if (options.Frame < AsGiven || options.Frame > Press)
-  {
-    throw std::runtime_error("Coordinates is " + std::to_string(options.Frame) +
-      "; it must be 0 (AsGiven), 1 (Patient) or 2 (Press)");
-  }
+  Properties properties;
+  options.Describe(properties);
+  properties.Check();
   this->Collect(input, "", false);
   this->PlaceItems();
   const lacuna::Execution::NestedStages nested(execution);

@@ -6,6 +6,7 @@
 
 #include "lacunaCADSurface.h"
 
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
@@ -25,12 +26,14 @@ public:
     OutlineCurve,
     TrimToOutline
   };
+  static constexpr std::array<const char*, 3> OutlineNames{ "None", "Curve", "Trim" };
   enum FrameType
   {
     AsGiven,
     Patient,
     Press
   };
+  static constexpr std::array<const char*, 3> FrameNames{ "AsGiven", "Patient", "Press" };
   struct Options
   {
     SurfaceFitOptions Fit;
@@ -38,6 +41,8 @@ public:
     int Frame = AsGiven;
     bool AllowMirrored = false;
     bool SkipUnsupported = false;
+
+    void Describe(Properties& properties) const; ///< with what each may be
   };
   struct Curve
   {

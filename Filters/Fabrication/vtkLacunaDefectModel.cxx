@@ -7,7 +7,6 @@
 #include "lacunaDepthMap.h"
 #include "lacunaFieldData.h"
 #include "lacunaFittedPart.h"
-#include "lacunaParameterText.h"
 #include "lacunaPressPosition.h"
 #include "lacunaReliefSurface.h"
 #include "lacunaSolidMesh.h"
@@ -40,20 +39,10 @@ struct Input
   lacuna::DefectModelOptions Options;
   lacuna::Matrix4 ToWorld;
 
-  Input(vtkImageData* map, vtkLacunaDefectModel* self)
+  Input(vtkImageData* map, const lacuna::DefectModelOptions& options)
+    : Options(options)
   {
     lacuna::FittedPart part(map, "a model");
-    const int floor = self->GetFloorShape();
-    if (floor != vtkLacunaDefectModel::Flat && floor != vtkLacunaDefectModel::Parallel)
-    {
-      throw std::runtime_error(
-        "FloorShape is " + std::to_string(floor) + "; it must be 0 (Flat) or 1 (Parallel)");
-    }
-    this->Options.Margin = self->GetMargin();
-    this->Options.Floor = static_cast<lacuna::DefectFloor>(floor);
-    this->Options.DefectDepth = self->GetDefectDepth();
-    this->Options.BaseThickness = self->GetBaseThickness();
-    this->Options.MaximumHeight = self->GetMaximumHeight();
     int dimensions[3];
     map->GetDimensions(dimensions);
     this->Scene.MapSize = { dimensions[0], dimensions[1] };
@@ -127,12 +116,13 @@ int vtkLacunaDefectModel::FillOutputPortInformation(int port, vtkInformation* in
 //------------------------------------------------------------------------------
 void vtkLacunaDefectModel::Announce(const lacuna::Ports& ports)
 {
+  this->CheckProperties();
   this->UpdateInput(ports); // the size of the grid depends on the defect
   int extent[6] = { 0, -1, 0, -1, 0, -1 };
   auto* map = ports.GetInput<vtkImageData>();
   if (map && map->GetNumberOfPoints() > 0)
   {
-    const Input input(map, this);
+    const Input input(map, this->GetOptions());
     const auto plan = lacuna::PlanDefectModel(input.Scene, input.Options);
     extent[1] = static_cast<int>(plan.Size.Columns) - 1;
     extent[3] = static_cast<int>(plan.Size.Rows) - 1;
@@ -150,7 +140,7 @@ void vtkLacunaDefectModel::Make(const lacuna::Ports& ports, lacuna::AlgorithmExe
   // VTK passes the map's, whose ImageToWorld is not of these
   solid->GetFieldData()->Initialize();
   top->GetFieldData()->Initialize();
-  const Input input(map, this);
+  const Input input(map, this->GetOptions());
   execution.SetStage(0, 0.1);
   const lacuna::ReliefSurface surface(
     execution, input.Scene.Size, input.Scene.Fitted, input.Scene.Spacing);
@@ -199,24 +189,19 @@ void vtkLacunaDefectModel::Make(const lacuna::Ports& ports, lacuna::AlgorithmExe
 }
 
 //------------------------------------------------------------------------------
-std::string vtkLacunaDefectModel::Parameters(int) const
+lacuna::DefectModelOptions vtkLacunaDefectModel::GetOptions() const
 {
-  return lacuna::ParameterText()
-    .Add("Margin", this->Margin)
-    .Add("FloorShape", this->FloorShape)
-    .Add("DefectDepth", this->DefectDepth)
-    .Add("BaseThickness", this->BaseThickness)
-    .Add("MaximumHeight", this->MaximumHeight)
-    .Get();
+  lacuna::DefectModelOptions options;
+  options.Margin = this->Margin;
+  options.Floor = static_cast<lacuna::DefectFloor>(this->FloorShape);
+  options.DefectDepth = this->DefectDepth;
+  options.BaseThickness = this->BaseThickness;
+  options.MaximumHeight = this->MaximumHeight;
+  return options;
 }
 
 //------------------------------------------------------------------------------
-void vtkLacunaDefectModel::PrintSelf(ostream& os, vtkIndent indent)
+void vtkLacunaDefectModel::Describe(lacuna::Properties& properties) const
 {
-  this->Superclass::PrintSelf(os, indent);
-  os << indent << "Margin: " << this->Margin << "\n";
-  os << indent << "FloorShape: " << this->FloorShape << "\n";
-  os << indent << "DefectDepth: " << this->DefectDepth << "\n";
-  os << indent << "BaseThickness: " << this->BaseThickness << "\n";
-  os << indent << "MaximumHeight: " << this->MaximumHeight << "\n";
+  this->GetOptions().Describe(properties);
 }

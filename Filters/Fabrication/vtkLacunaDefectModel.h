@@ -42,13 +42,17 @@
 #include "vtkLacunaFiltersFabricationModule.h" // for export macro
 #include "vtkPolyDataAlgorithm.h"
 
+namespace lacuna
+{
+struct DefectModelOptions;
+}
+
 class VTKLACUNAFILTERSFABRICATION_EXPORT vtkLacunaDefectModel
   : public vtkLacunaAlgorithmOf(vtkPolyDataAlgorithm)
 {
 public:
   static vtkLacunaDefectModel* New();
   vtkTypeMacro(vtkLacunaDefectModel, vtkPolyDataAlgorithm);
-  void PrintSelf(ostream& os, vtkIndent indent) override;
 
   static constexpr const char* ModelFaceName = "ModelFace";
   static constexpr const char* PressToPatientName = "PressToPatient";
@@ -93,11 +97,13 @@ protected:
   int FillOutputPortInformation(int port, vtkInformation* info) override;
   void Announce(const lacuna::Ports& ports) override;
   void Make(const lacuna::Ports& ports, lacuna::AlgorithmExecution& execution) override;
-  std::string Parameters(int port) const override;
+  void Describe(lacuna::Properties& properties) const override;
 
 private:
   vtkLacunaDefectModel(const vtkLacunaDefectModel&) = delete;
   void operator=(const vtkLacunaDefectModel&) = delete;
+
+  lacuna::DefectModelOptions GetOptions() const;
 
   double Margin = 15;
   int FloorShape = Flat;

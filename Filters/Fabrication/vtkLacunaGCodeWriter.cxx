@@ -267,20 +267,30 @@ void vtkLacunaGCodeWriter::WriteFile()
 }
 
 //------------------------------------------------------------------------------
-lacuna::GCodeOptions vtkLacunaGCodeWriter::GetOptions(vtkPolyData* path, bool isMoved) const
+lacuna::GCodeOptions vtkLacunaGCodeWriter::GetOptions() const
 {
   lacuna::GCodeOptions options;
   options.ProgramNumber = this->ProgramNumber;
   options.ToolNumber = this->ToolNumber;
   options.WorkOffset = this->WorkOffset;
-  options.SpindleSpeed =
-    this->SpindleSpeed != 0 ? this->SpindleSpeed : GetNumber(path, "SpindleSpeed");
+  options.SpindleSpeed = this->SpindleSpeed;
+  options.LineNumbers = this->LineNumbers;
+  options.ArcTolerance = this->ArcTolerance;
+  return options;
+}
+
+//------------------------------------------------------------------------------
+lacuna::GCodeOptions vtkLacunaGCodeWriter::GetOptions(vtkPolyData* path, bool isMoved) const
+{
+  lacuna::GCodeOptions options = this->GetOptions();
+  if (options.SpindleSpeed == 0)
+  {
+    options.SpindleSpeed = GetNumber(path, "SpindleSpeed");
+  }
   if (options.SpindleSpeed == 0)
   {
     throw std::runtime_error("the path has no SpindleSpeed; set SpindleSpeed");
   }
-  options.LineNumbers = this->LineNumbers;
-  options.ArcTolerance = this->ArcTolerance;
   options.HasEnvelope = !std::equal(NoEnvelope, NoEnvelope + 6, this->Envelope);
   for (int axis = 0; axis < 3; ++axis)
   {
@@ -350,25 +360,19 @@ void vtkLacunaGCodeWriter::WriteProgram(vtkPolyData* path)
 }
 
 //------------------------------------------------------------------------------
+void vtkLacunaGCodeWriter::Describe(lacuna::Properties& properties) const
+{
+  this->GetOptions().Describe(properties);
+  properties.Add("Envelope", this->Envelope)
+    .Add("AcceptWarnings", this->AcceptWarnings)
+    .Add("AllowMirrored", this->AllowMirrored)
+    .Add("Header", this->Header)
+    .Add("Footer", this->Footer);
+}
+
+//------------------------------------------------------------------------------
 void vtkLacunaGCodeWriter::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
-  const auto text = [](const char* value) { return value ? value : "(none)"; };
-  os << indent << "FileName: " << text(this->FileName) << "\n";
-  os << indent << "ProgramNumber: " << this->ProgramNumber << "\n";
-  os << indent << "ToolNumber: " << this->ToolNumber << "\n";
-  os << indent << "WorkOffset: " << this->WorkOffset << "\n";
-  os << indent << "SpindleSpeed: " << this->SpindleSpeed << "\n";
-  os << indent << "LineNumbers: " << this->LineNumbers << "\n";
-  os << indent << "ArcTolerance: " << this->ArcTolerance << "\n";
-  os << indent << "Envelope: " << this->Envelope[0] << " " << this->Envelope[1] << " "
-     << this->Envelope[2] << " " << this->Envelope[3] << " " << this->Envelope[4] << " "
-     << this->Envelope[5] << "\n";
-  os << indent << "AcceptWarnings: " << this->AcceptWarnings << "\n";
-  os << indent << "AllowMirrored: " << this->AllowMirrored << "\n";
-  os << indent << "Header: " << text(this->Header) << "\n";
-  os << indent << "Footer: " << text(this->Footer) << "\n";
-  os << indent << "Piece: " << this->Piece << " of " << this->NumberOfPieces << "\n";
-  os << indent << "FileSize: " << this->FileSize << "\n";
   os << indent << "NumberOfBlocks: " << this->NumberOfBlocks << "\n";
 }

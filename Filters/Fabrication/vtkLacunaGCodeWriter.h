@@ -132,6 +132,7 @@ protected:
 
   int FillInputPortInformation(int port, vtkInformation* info) override;
   void WriteFile() override;
+  void Describe(lacuna::Properties& properties) const override;
   void ClearResults() override;
 
 private:
@@ -139,6 +140,7 @@ private:
   void operator=(const vtkLacunaGCodeWriter&) = delete;
 
   void WriteProgram(vtkPolyData* path);
+  lacuna::GCodeOptions GetOptions() const; // the numbers
   lacuna::GCodeOptions GetOptions(vtkPolyData* path, bool isMoved) const;
 
   int ProgramNumber = 1;

@@ -5,7 +5,6 @@
 #include "lacunaAtomicFile.h"
 #include "lacunaCADContent.h"
 #include "lacunaIGESDocument.h"
-#include "lacunaParameterText.h"
 #include "lacunaPrintableText.h"
 #include "lacunaProvenance.h"
 #include "vtkInformation.h"
@@ -164,6 +163,19 @@ void AddDescription(const lacuna::CADContent& content, std::vector<std::string>&
 }
 }
 
+// As the content takes them.
+struct vtkLacunaIGESWriter::Options : lacuna::CADContent::Options
+{
+  explicit Options(const vtkLacunaIGESWriter* self)
+  {
+    this->Fit.Tolerance = self->Tolerance;
+    this->Outline = self->DefectOutline;
+    this->Frame = self->Coordinates;
+    this->AllowMirrored = self->AllowMirrored;
+    this->SkipUnsupported = self->SkipUnsupported;
+  }
+};
+
 //------------------------------------------------------------------------------
 vtkLacunaIGESWriter::~vtkLacunaIGESWriter()
 {
@@ -201,13 +213,7 @@ void vtkLacunaIGESWriter::WriteFile()
   }
   lacuna::AlgorithmExecution execution(this);
   execution.SetStage(0, 0.9);
-  lacuna::CADContent::Options options;
-  options.Fit.Tolerance = this->Tolerance;
-  options.Outline = this->DefectOutline;
-  options.Frame = this->Coordinates;
-  options.AllowMirrored = this->AllowMirrored;
-  options.SkipUnsupported = this->SkipUnsupported;
-  const lacuna::CADContent content(input, options, execution);
+  const lacuna::CADContent content(input, Options(this), execution);
   const lacuna::IGESHeader header = this->MakeHeader(content);
   const std::string text = MakeDocument(content).GetText(header);
   execution.SetStage(0.9, 1);
@@ -239,14 +245,10 @@ lacuna::IGESHeader vtkLacunaIGESWriter::MakeHeader(const lacuna::CADContent& con
   header.MinimumResolution = std::clamp(this->Tolerance, 1e-6, 1e-3);
   header.Start.push_back(version + " IGES Writer. Unit mm. No medical device.");
   AddDescription(content, header.Start);
-  lacuna::ParameterText parameters;
-  parameters.Add("Tolerance", this->Tolerance)
-    .Add("DefectOutline", this->DefectOutline)
-    .Add("Coordinates", this->Coordinates)
-    .Add("AllowMirrored", this->AllowMirrored)
-    .Add("SkipUnsupported", this->SkipUnsupported);
+  lacuna::Properties properties;
+  this->Describe(properties);
   vtkNew<vtkPolyData> record; // takes the steps of all inputs and this one
-  lacuna::Provenance::Record(record, this, content.Inputs, parameters.Get());
+  lacuna::Provenance::Record(record, this, content.Inputs, properties.GetText());
   for (const std::string& step : lacuna::Provenance::Get(record))
   {
     header.Start.push_back("Made by: " + step);
@@ -274,21 +276,19 @@ void vtkLacunaIGESWriter::SetResults(const lacuna::CADContent& content)
 }
 
 //------------------------------------------------------------------------------
+void vtkLacunaIGESWriter::Describe(lacuna::Properties& properties) const
+{
+  Options(this).Describe(properties);
+}
+
+//------------------------------------------------------------------------------
 void vtkLacunaIGESWriter::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
-  os << indent << "FileName: " << (this->FileName ? this->FileName : "(none)") << "\n";
-  os << indent << "Tolerance: " << this->Tolerance << "\n";
-  os << indent << "DefectOutline: " << this->DefectOutline << "\n";
-  os << indent << "Coordinates: " << this->Coordinates << "\n";
-  os << indent << "AllowMirrored: " << this->AllowMirrored << "\n";
-  os << indent << "SkipUnsupported: " << this->SkipUnsupported << "\n";
-  os << indent << "Piece: " << this->Piece << " of " << this->NumberOfPieces << "\n";
   os << indent << "MaximumDeviation: " << this->MaximumDeviation << "\n";
   os << indent << "NumberOfControlPoints: " << this->NumberOfControlPoints[0] << " "
      << this->NumberOfControlPoints[1] << "\n";
   os << indent << "NumberOfSurfaces: " << this->NumberOfSurfaces << "\n";
   os << indent << "NumberOfCurves: " << this->NumberOfCurves << "\n";
   os << indent << "NumberOfPoints: " << this->NumberOfPoints << "\n";
-  os << indent << "FileSize: " << this->FileSize << "\n";
 }

@@ -145,12 +145,14 @@ protected:
 
   int FillInputPortInformation(int port, vtkInformation* info) override;
   void WriteFile() override;
+  void Describe(lacuna::Properties& properties) const override;
   void ClearResults() override;
 
 private:
   vtkLacunaIGESWriter(const vtkLacunaIGESWriter&) = delete;
   void operator=(const vtkLacunaIGESWriter&) = delete;
 
+  struct Options;
   lacuna::IGESHeader MakeHeader(const lacuna::CADContent& content);
   void SetResults(const lacuna::CADContent& content);
 

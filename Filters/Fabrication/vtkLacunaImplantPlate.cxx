@@ -198,39 +198,17 @@ int vtkLacunaImplantPlate::FillInputPortInformation(int port, vtkInformation* in
 }
 
 //------------------------------------------------------------------------------
-void vtkLacunaImplantPlate::CheckProperties() const
-{
-  if (this->Side != Inward && this->Side != Outward)
-  {
-    throw std::runtime_error(
-      "Side is " + std::to_string(this->Side) + "; it must be 0 (Inward) or 1 (Outward)");
-  }
-  if (this->EdgeShape < Square || this->EdgeShape > Rounded)
-  {
-    throw std::runtime_error("EdgeShape is " + std::to_string(this->EdgeShape) +
-      "; it must be 0 (Square), 1 (Beveled) or 2 (Rounded)");
-  }
-  if (!(this->Density > 0 && std::isfinite(this->Density)))
-  {
-    throw std::runtime_error("Density is " + lacuna::FormatNumber(this->Density) +
-      "; it must be a number of g/cm^3 above 0");
-  }
-}
-
-//------------------------------------------------------------------------------
-lacuna::ImplantPlateOptions vtkLacunaImplantPlate::GetOptions(const lacuna::FittedPart& part) const
+lacuna::ImplantPlateOptions vtkLacunaImplantPlate::GetOptions() const
 {
   lacuna::ImplantPlateOptions options;
   options.Thickness = this->Thickness;
-  options.Side = this->Side == Inward ? lacuna::PlateSide::Inward : lacuna::PlateSide::Outward;
+  options.Side = static_cast<lacuna::PlateSide>(this->Side);
   options.EdgeClearance = this->EdgeClearance;
   options.CornerRadius = this->CornerRadius;
   options.Edge = static_cast<lacuna::PlateEdge>(this->EdgeShape);
   options.EdgeSize = this->Bevel;
   options.BothFaces = this->BevelBothFaces;
-  options.TriangleSize = this->TriangleSize == 0
-    ? std::min({ LargestTriangle, part.Spacing[0], part.Spacing[1] })
-    : this->TriangleSize;
+  options.TriangleSize = this->TriangleSize;
   options.Hole = { this->HoleDiameter, this->CountersinkDiameter, this->CountersinkAngle };
   options.DrainageSpacing = this->DrainageSpacing;
   options.DrainageDiameter = this->DrainageDiameter;
@@ -329,9 +307,12 @@ void vtkLacunaImplantPlate::Make(const lacuna::Ports& ports, lacuna::AlgorithmEx
 {
   auto* map = ports.GetInput<vtkImageData>();
   auto* output = ports.GetOutput<vtkPolyData>();
-  this->CheckProperties();
   const lacuna::FittedPart part(map, "a plate");
-  lacuna::ImplantPlateOptions options = this->GetOptions(part);
+  lacuna::ImplantPlateOptions options = this->GetOptions();
+  if (options.TriangleSize == 0)
+  {
+    options.TriangleSize = std::min({ LargestTriangle, part.Spacing[0], part.Spacing[1] });
+  }
   const std::vector<lacuna::Vec3> holes = this->GetHoles(ports.GetInput<vtkPointSet>(1));
   const lacuna::Matrix4 toPart = part.ToWorld.Inverse();
   for (const lacuna::Vec3& p : holes)
@@ -363,45 +344,32 @@ std::vector<vtkDataObject*> vtkLacunaImplantPlate::GetOrigins(const lacuna::Port
 }
 
 //------------------------------------------------------------------------------
-std::string vtkLacunaImplantPlate::Parameters(int) const
+void vtkLacunaImplantPlate::DescribeWith(
+  lacuna::Properties& properties, const std::vector<double>& holes) const
 {
-  return lacuna::ParameterText()
-    .Add("Thickness", this->Thickness)
-    .Add("Side", this->Side)
-    .Add("EdgeClearance", this->EdgeClearance)
-    .Add("EdgeShape", this->EdgeShape)
-    .Add("Bevel", this->Bevel)
-    .Add("BevelBothFaces", this->BevelBothFaces)
-    .Add("CornerRadius", this->CornerRadius)
-    .Add("TriangleSize", this->TriangleSize)
-    .Add("HolePoints", this->Drilled)
-    .Add("HoleDiameter", this->HoleDiameter)
-    .Add("CountersinkDiameter", this->CountersinkDiameter)
-    .Add("CountersinkAngle", this->CountersinkAngle)
-    .Add("DrainageSpacing", this->DrainageSpacing)
-    .Add("DrainageDiameter", this->DrainageDiameter)
-    .Add("Density", this->Density)
-    .Get();
+  using lacuna::ValueRange;
+  this->GetOptions().Describe(properties);
+  properties.Add("HolePoints", holes)
+    .Add("MinimumBoneThickness", this->MinimumBoneThickness,
+      ValueRange::Above(0, "mm").OrZero("no warnings"))
+    .Add("Density", this->Density, ValueRange::Above(0, "g/cm\u00b3"));
 }
 
 //------------------------------------------------------------------------------
-void vtkLacunaImplantPlate::PrintSelf(ostream& os, vtkIndent indent)
+void vtkLacunaImplantPlate::Describe(lacuna::Properties& properties) const
 {
-  this->Superclass::PrintSelf(os, indent);
-  os << indent << "Thickness: " << this->Thickness << "\n";
-  os << indent << "Side: " << this->Side << "\n";
-  os << indent << "EdgeClearance: " << this->EdgeClearance << "\n";
-  os << indent << "EdgeShape: " << this->EdgeShape << "\n";
-  os << indent << "Bevel: " << this->Bevel << "\n";
-  os << indent << "BevelBothFaces: " << this->BevelBothFaces << "\n";
-  os << indent << "CornerRadius: " << this->CornerRadius << "\n";
-  os << indent << "TriangleSize: " << this->TriangleSize << "\n";
-  os << indent << "HolePoints: " << this->HolePoints.size() << "\n";
-  os << indent << "HoleDiameter: " << this->HoleDiameter << "\n";
-  os << indent << "CountersinkDiameter: " << this->CountersinkDiameter << "\n";
-  os << indent << "CountersinkAngle: " << this->CountersinkAngle << "\n";
-  os << indent << "MinimumBoneThickness: " << this->MinimumBoneThickness << "\n";
-  os << indent << "DrainageSpacing: " << this->DrainageSpacing << "\n";
-  os << indent << "DrainageDiameter: " << this->DrainageDiameter << "\n";
-  os << indent << "Density: " << this->Density << "\n";
+  std::vector<double> given;
+  for (const std::array<double, 3>& p : this->HolePoints)
+  {
+    given.insert(given.end(), p.begin(), p.end());
+  }
+  this->DescribeWith(properties, given);
+}
+
+//------------------------------------------------------------------------------
+std::string vtkLacunaImplantPlate::Parameters(int) const
+{
+  lacuna::Properties properties;
+  this->DescribeWith(properties, this->Drilled);
+  return properties.GetText();
 }

@@ -72,7 +72,6 @@ class VTKLACUNAFILTERSFABRICATION_EXPORT vtkLacunaImplantPlate
 public:
   static vtkLacunaImplantPlate* New();
   vtkTypeMacro(vtkLacunaImplantPlate, vtkPolyDataAlgorithm);
-  void PrintSelf(ostream& os, vtkIndent indent) override;
 
   static constexpr const char* PlateFaceName = "PlateFace";
 
@@ -188,15 +187,16 @@ protected:
   int FillInputPortInformation(int port, vtkInformation* info) override;
   void Make(const lacuna::Ports& ports, lacuna::AlgorithmExecution& execution) override;
   std::string Parameters(int port) const override;
+  void Describe(lacuna::Properties& properties) const override;
   std::vector<vtkDataObject*> GetOrigins(const lacuna::Ports& ports) const override;
 
 private:
   vtkLacunaImplantPlate(const vtkLacunaImplantPlate&) = delete;
   void operator=(const vtkLacunaImplantPlate&) = delete;
 
-  void CheckProperties() const;
-  lacuna::ImplantPlateOptions GetOptions(const lacuna::FittedPart& part) const; // without holes
-  std::vector<lacuna::Vec3> GetHoles(vtkPointSet* marks) const;                 // in world mm
+  lacuna::ImplantPlateOptions GetOptions() const;               // without holes
+  std::vector<lacuna::Vec3> GetHoles(vtkPointSet* marks) const; // in world mm
+  void DescribeWith(lacuna::Properties& properties, const std::vector<double>& holes) const;
   // With triangles so small that the plate is thick enough, unless their size is given.
   lacuna::ImplantPlate MakePlate(const lacuna::FittedPart& part,
     lacuna::ImplantPlateOptions& options, lacuna::AlgorithmExecution& execution);

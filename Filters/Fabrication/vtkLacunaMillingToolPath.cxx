@@ -27,9 +27,9 @@
 #include "vtkUnsignedCharArray.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
-#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -39,6 +39,7 @@ vtkStandardNewMacro(vtkLacunaMillingToolPath);
 namespace
 {
 constexpr const char* PressToPatientName = "PressToPatient";
+constexpr std::array<const char*, 2> PatternNames{ "ZigZag", "OneWay" };
 
 //------------------------------------------------------------------------------
 vtkSmartPointer<vtkPoints> MakePoints(const std::vector<lacuna::Vec3>& source)
@@ -260,65 +261,19 @@ int vtkLacunaMillingToolPath::FillInputPortInformation(int, vtkInformation* info
 }
 
 //------------------------------------------------------------------------------
-void vtkLacunaMillingToolPath::CheckProperties() const
+void vtkLacunaMillingToolPath::Describe(lacuna::Properties& properties) const
 {
-  const auto oneOf = [](const char* name, int value, const char* first, const char* second)
-  {
-    if (value != 0 && value != 1)
-    {
-      throw std::runtime_error(std::string(name) + " is " + std::to_string(value) +
-        "; it must be 0 (" + first + ") or 1 (" + second + ")");
-    }
-  };
-  oneOf("ToolShape", this->ToolShape, "Ball", "Flat");
-  oneOf("Pattern", this->Pattern, "ZigZag", "OneWay");
-  const auto positive = [](const char* name, double value, double largest, const char* unit)
-  {
-    if (!(value > 0 && value <= largest))
-    {
-      throw std::runtime_error(std::string(name) + " is " + lacuna::FormatNumber(value) +
-        "; it must be above 0 and at most " + lacuna::FormatNumber(largest) + unit);
-    }
-  };
-  positive("FeedRate", this->FeedRate, 1e5, " mm/min");
-  positive("PlungeFeedRate", this->PlungeFeedRate, 1e5, " mm/min");
-  positive("RapidFeedRate", this->RapidFeedRate, 1e6, " mm/min");
-  positive("SpindleSpeed", this->SpindleSpeed, 1e6, " turns per minute");
-  positive("LeftOverLimit", this->LeftOverLimit, 1e3, " mm");
-  if (!(this->MapSpacing >= 0 && this->MapSpacing <= 1e3))
-  {
-    throw std::runtime_error("MapSpacing is " + lacuna::FormatNumber(this->MapSpacing) +
-      " mm; 0 (a quarter of the step-over) to 1000 is possible");
-  }
-}
-
-//------------------------------------------------------------------------------
-std::string vtkLacunaMillingToolPath::Parameters(int) const
-{
-  lacuna::ParameterText parameters;
-  parameters.Add("ToolShape", this->ToolShape)
-    .Add("ToolRadius", this->ToolRadius)
-    .Add("StepOver", this->StepOver)
-    .Add("ScallopHeight", this->ScallopHeight)
-    .Add("Overrun", this->Overrun)
-    .Add("Direction", this->Direction)
-    .Add("Pattern", this->Pattern)
-    .Add("Finishing", this->Finishing)
-    .Add("RoughingStep", this->RoughingStep)
-    .Add("RoughingStepOver", this->RoughingStepOver)
-    .Add("StockAllowance", this->StockAllowance)
-    .Add("StockTop", this->StockTop)
-    .Add("SafeHeight", this->SafeHeight)
-    .Add("LeadRadius", this->LeadRadius)
-    .Add("PathStep", this->PathStep)
-    .Add("Tolerance", this->Tolerance)
-    .Add("FeedRate", this->FeedRate)
-    .Add("PlungeFeedRate", this->PlungeFeedRate)
-    .Add("RapidFeedRate", this->RapidFeedRate)
-    .Add("SpindleSpeed", this->SpindleSpeed)
-    .Add("MapSpacing", this->MapSpacing)
-    .Add("LeftOverLimit", this->LeftOverLimit);
-  return parameters.Get();
+  using lacuna::ValueRange;
+  constexpr ValueRange Feeds = ValueRange::Above(0, "mm/min").UpTo(1e5);
+  this->GetOptions().Describe(properties);
+  properties.Add("Pattern", this->Pattern, PatternNames)
+    .Add("FeedRate", this->FeedRate, Feeds)
+    .Add("PlungeFeedRate", this->PlungeFeedRate, Feeds)
+    .Add("RapidFeedRate", this->RapidFeedRate, ValueRange::Above(0, "mm/min").UpTo(1e6))
+    .Add("SpindleSpeed", this->SpindleSpeed, ValueRange::Above(0, "1/min").UpTo(1e6))
+    .Add("MapSpacing", this->MapSpacing,
+      ValueRange::Above(0, "mm").UpTo(1000).OrZero("a quarter of the step-over"))
+    .Add("LeftOverLimit", this->LeftOverLimit, ValueRange::Above(0, "mm").UpTo(1000));
 }
 
 //------------------------------------------------------------------------------
@@ -358,7 +313,6 @@ void vtkLacunaMillingToolPath::Make(
   const lacuna::Ports& ports, lacuna::AlgorithmExecution& execution)
 {
   auto* grid = ports.GetInput<vtkStructuredGrid>();
-  this->CheckProperties();
   lacuna::FieldData::Find(grid, PressToPatientName, 16, 1);
   auto told = vtkSmartPointer<vtkStringArray>::New();
   told->SetName(WarningsName);
@@ -420,32 +374,4 @@ void vtkLacunaMillingToolPath::Make(
       MarkMoved(output, lacuna::PressPosition::FindMove(grid)->Way);
     }
   }
-}
-
-//------------------------------------------------------------------------------
-void vtkLacunaMillingToolPath::PrintSelf(ostream& os, vtkIndent indent)
-{
-  this->Superclass::PrintSelf(os, indent);
-  os << indent << "ToolShape: " << this->ToolShape << "\n";
-  os << indent << "ToolRadius: " << this->ToolRadius << "\n";
-  os << indent << "StepOver: " << this->StepOver << "\n";
-  os << indent << "ScallopHeight: " << this->ScallopHeight << "\n";
-  os << indent << "Overrun: " << this->Overrun << "\n";
-  os << indent << "Direction: " << this->Direction << "\n";
-  os << indent << "Pattern: " << this->Pattern << "\n";
-  os << indent << "Finishing: " << this->Finishing << "\n";
-  os << indent << "RoughingStep: " << this->RoughingStep << "\n";
-  os << indent << "RoughingStepOver: " << this->RoughingStepOver << "\n";
-  os << indent << "StockAllowance: " << this->StockAllowance << "\n";
-  os << indent << "StockTop: " << this->StockTop << "\n";
-  os << indent << "SafeHeight: " << this->SafeHeight << "\n";
-  os << indent << "LeadRadius: " << this->LeadRadius << "\n";
-  os << indent << "PathStep: " << this->PathStep << "\n";
-  os << indent << "Tolerance: " << this->Tolerance << "\n";
-  os << indent << "FeedRate: " << this->FeedRate << "\n";
-  os << indent << "PlungeFeedRate: " << this->PlungeFeedRate << "\n";
-  os << indent << "RapidFeedRate: " << this->RapidFeedRate << "\n";
-  os << indent << "SpindleSpeed: " << this->SpindleSpeed << "\n";
-  os << indent << "MapSpacing: " << this->MapSpacing << "\n";
-  os << indent << "LeftOverLimit: " << this->LeftOverLimit << "\n";
 }

@@ -67,7 +67,6 @@ class VTKLACUNAFILTERSFABRICATION_EXPORT vtkLacunaMillingToolPath
 public:
   static vtkLacunaMillingToolPath* New();
   vtkTypeMacro(vtkLacunaMillingToolPath, vtkPolyDataAlgorithm);
-  void PrintSelf(ostream& os, vtkIndent indent) override;
 
   /// Field data of both outputs: what was warned of, a text each; vtkLacunaGCodeWriter asks about it.
   static constexpr const char* WarningsName = "Warnings";
@@ -213,13 +212,12 @@ protected:
 
   int FillInputPortInformation(int port, vtkInformation* info) override;
   void Make(const lacuna::Ports& ports, lacuna::AlgorithmExecution& execution) override;
-  std::string Parameters(int port) const override;
+  void Describe(lacuna::Properties& properties) const override;
 
 private:
   vtkLacunaMillingToolPath(const vtkLacunaMillingToolPath&) = delete;
   void operator=(const vtkLacunaMillingToolPath&) = delete;
 
-  void CheckProperties() const;
   lacuna::ToolPathOptions GetOptions() const;
   // mm that may be left at the border; more is warned of.
   double GetBorderLimit(double stepOver) const;

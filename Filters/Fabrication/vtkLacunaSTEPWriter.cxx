@@ -5,7 +5,6 @@
 #include "lacunaAtomicFile.h"
 #include "lacunaFacetedSolid.h"
 #include "lacunaMirrored.h"
-#include "lacunaParameterText.h"
 #include "lacunaPrintableText.h"
 #include "lacunaProgram.h"
 #include "lacunaProvenance.h"
@@ -146,10 +145,10 @@ void vtkLacunaSTEPWriter::WriteSolid(vtkPolyData* surface)
   {
     header.Description.emplace_back("MIRROR IMAGE, left is right.");
   }
-  lacuna::ParameterText parameters;
-  parameters.Add("Tolerance", this->Tolerance).Add("AllowMirrored", this->AllowMirrored);
+  lacuna::Properties properties;
+  this->Describe(properties);
   vtkNew<vtkPolyData> record; // takes the steps of the input and this one
-  lacuna::Provenance::Record(record, this, { surface }, parameters.Get());
+  lacuna::Provenance::Record(record, this, { surface }, properties.GetText());
   for (const std::string& step : lacuna::Provenance::Get(record))
   {
     header.Description.push_back("Made by: " + step);
@@ -183,16 +182,18 @@ void vtkLacunaSTEPWriter::WriteSolid(vtkPolyData* surface)
 }
 
 //------------------------------------------------------------------------------
+void vtkLacunaSTEPWriter::Describe(lacuna::Properties& properties) const
+{
+  properties.Add("Tolerance", this->Tolerance, lacuna::FaceTolerances)
+    .Add("AllowMirrored", this->AllowMirrored)
+    .Add("Note", this->Note);
+}
+
+//------------------------------------------------------------------------------
 void vtkLacunaSTEPWriter::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
-  os << indent << "FileName: " << (this->FileName ? this->FileName : "(none)") << "\n";
-  os << indent << "Tolerance: " << this->Tolerance << "\n";
-  os << indent << "AllowMirrored: " << this->AllowMirrored << "\n";
-  os << indent << "Note: " << (this->Note ? this->Note : "(none)") << "\n";
-  os << indent << "Piece: " << this->Piece << " of " << this->NumberOfPieces << "\n";
   os << indent << "MaximumDeviation: " << this->MaximumDeviation << "\n";
   os << indent << "NumberOfSolids: " << this->NumberOfSolids << "\n";
   os << indent << "NumberOfFaces: " << this->NumberOfFaces << "\n";
-  os << indent << "FileSize: " << this->FileSize << "\n";
 }

@@ -87,6 +87,7 @@ protected:
 
   int FillInputPortInformation(int port, vtkInformation* info) override;
   void WriteFile() override;
+  void Describe(lacuna::Properties& properties) const override;
   void ClearResults() override;
 
 private:

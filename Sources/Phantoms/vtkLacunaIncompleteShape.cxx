@@ -5,7 +5,6 @@
 #include "lacunaFieldData.h"
 #include "lacunaIncompleteShape.h"
 #include "lacunaMemory.h"
-#include "lacunaParameterText.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkNew.h"
@@ -21,6 +20,23 @@
 
 vtkStandardNewMacro(vtkLacunaIncompleteShape);
 
+// As the kernel takes them.
+struct vtkLacunaIncompleteShape::Options : lacuna::IncompleteShape::Parameters
+{
+  explicit Options(const vtkLacunaIncompleteShape* self)
+  {
+    this->Shape = static_cast<lacuna::IncompleteShape::Kind>(self->Shape);
+    std::copy_n(self->Dimensions, 3, this->Dimensions.begin());
+    this->PresentFraction = self->PresentFraction;
+    this->Patches = self->Patches;
+    this->PatchRadii = { self->PatchRadii[0], self->PatchRadii[1] };
+    this->GapAngle = self->GapAngle;
+    this->TissueFraction = self->TissueFraction;
+    this->OutlierFraction = self->OutlierFraction;
+    this->Seed = static_cast<std::uint64_t>(self->Seed);
+  }
+};
+
 //------------------------------------------------------------------------------
 vtkLacunaIncompleteShape::vtkLacunaIncompleteShape()
 {
@@ -30,19 +46,9 @@ vtkLacunaIncompleteShape::vtkLacunaIncompleteShape()
 vtkLacunaIncompleteShape::~vtkLacunaIncompleteShape() = default;
 
 //------------------------------------------------------------------------------
-lacuna::IncompleteShape vtkLacunaIncompleteShape::MakeShape()
+lacuna::IncompleteShape vtkLacunaIncompleteShape::MakeShape() const
 {
-  lacuna::IncompleteShape::Parameters p;
-  p.Shape = static_cast<lacuna::IncompleteShape::Kind>(this->Shape);
-  std::copy_n(this->Dimensions, 3, p.Dimensions.begin());
-  p.PresentFraction = this->PresentFraction;
-  p.Patches = this->Patches;
-  p.PatchRadii = { this->PatchRadii[0], this->PatchRadii[1] };
-  p.GapAngle = this->GapAngle;
-  p.TissueFraction = this->TissueFraction;
-  p.OutlierFraction = this->OutlierFraction;
-  p.Seed = static_cast<std::uint64_t>(this->Seed);
-  return lacuna::IncompleteShape(p);
+  return lacuna::IncompleteShape(Options(this));
 }
 
 //------------------------------------------------------------------------------
@@ -97,33 +103,7 @@ void vtkLacunaIncompleteShape::Make(
 }
 
 //------------------------------------------------------------------------------
-std::string vtkLacunaIncompleteShape::Parameters(int) const
+void vtkLacunaIncompleteShape::Describe(lacuna::Properties& properties) const
 {
-  return lacuna::ParameterText()
-    .Add("Shape", this->Shape)
-    .Add("Dimensions", this->Dimensions)
-    .Add("PresentFraction", this->PresentFraction)
-    .Add("Patches", this->Patches)
-    .Add("PatchRadii", this->PatchRadii)
-    .Add("GapAngle", this->GapAngle)
-    .Add("TissueFraction", this->TissueFraction)
-    .Add("OutlierFraction", this->OutlierFraction)
-    .Add("Seed", this->Seed)
-    .Get();
-}
-
-//------------------------------------------------------------------------------
-void vtkLacunaIncompleteShape::PrintSelf(ostream& os, vtkIndent indent)
-{
-  this->Superclass::PrintSelf(os, indent);
-  os << indent << "Shape: " << this->Shape << "\n";
-  os << indent << "Dimensions: " << this->Dimensions[0] << " " << this->Dimensions[1] << " "
-     << this->Dimensions[2] << "\n";
-  os << indent << "PresentFraction: " << this->PresentFraction << "\n";
-  os << indent << "Patches: " << this->Patches << "\n";
-  os << indent << "PatchRadii: " << this->PatchRadii[0] << " " << this->PatchRadii[1] << "\n";
-  os << indent << "GapAngle: " << this->GapAngle << "\n";
-  os << indent << "TissueFraction: " << this->TissueFraction << "\n";
-  os << indent << "OutlierFraction: " << this->OutlierFraction << "\n";
-  os << indent << "Seed: " << this->Seed << "\n";
+  Options(this).Describe(properties);
 }

@@ -27,21 +27,20 @@ class VTKLACUNASOURCESPHANTOMS_EXPORT vtkLacunaIncompleteShape
 public:
   static vtkLacunaIncompleteShape* New();
   vtkTypeMacro(vtkLacunaIncompleteShape, vtkImageAlgorithm);
-  void PrintSelf(ostream& os, vtkIndent indent) override;
 
   enum Shapes
   {
-    CIRCLE = 0,
-    CAVITY = 1,
-    BLOB = 2,
-    CUBE = 3,
-    SPHERE = 4,
-    KUMARA = 5
+    Circle = 0,
+    Cavity = 1,
+    Blob = 2,
+    Cube = 3,
+    Sphere = 4,
+    Kumara = 5
   };
 
   ///@{
-  /// CIRCLE, CAVITY and BLOB are curves in a 2-D image. Default CIRCLE.
-  vtkSetClampMacro(Shape, int, CIRCLE, KUMARA);
+  /// Circle, Cavity and Blob are curves in a 2-D image. Default Circle.
+  vtkSetMacro(Shape, int);
   vtkGetMacro(Shape, int);
   ///@}
 
@@ -96,7 +95,7 @@ public:
   ///@}
 
   /// Signed distance in mm of a point to the complete shape, negative inside: the truth. Exact for
-  /// CIRCLE, CUBE and SPHERE, else to first order near the shape. NaN for bad property values.
+  /// Circle, Cube and Sphere, else to first order near the shape. NaN for bad property values.
   double EvaluateDistance(double x, double y, double z);
 
 protected:
@@ -104,9 +103,9 @@ protected:
   ~vtkLacunaIncompleteShape() override;
   void Announce(const lacuna::Ports& ports) override;
   void Make(const lacuna::Ports& ports, lacuna::AlgorithmExecution& execution) override;
-  std::string Parameters(int port) const override;
+  void Describe(lacuna::Properties& properties) const override;
 
-  int Shape = CIRCLE;
+  int Shape = Circle;
   int Dimensions[3] = { 200, 200, 200 };
   double PresentFraction = 1;
   bool Patches = false;
@@ -120,7 +119,8 @@ private:
   vtkLacunaIncompleteShape(const vtkLacunaIncompleteShape&) = delete;
   void operator=(const vtkLacunaIncompleteShape&) = delete;
 
+  struct Options;
   // Throws std::invalid_argument when a property is out of range.
-  lacuna::IncompleteShape MakeShape();
+  lacuna::IncompleteShape MakeShape() const;
 };
 #endif

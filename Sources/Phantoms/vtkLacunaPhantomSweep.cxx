@@ -5,7 +5,6 @@
 #include "lacunaArrays.h"
 #include "lacunaFieldData.h"
 #include "lacunaMemory.h"
-#include "lacunaParameterText.h"
 #include "lacunaPhantomScene.h"
 #include "lacunaPhantomSweep.h"
 #include "lacunaProbeMotion.h"
@@ -24,6 +23,7 @@
 #include "vtkPointData.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 
+#include <array>
 #include <cmath>
 #include <limits>
 #include <sstream>
@@ -36,6 +36,7 @@ vtkStandardNewMacro(vtkLacunaPhantomSweep);
 namespace
 {
 constexpr double SlicesPerSecond = 25;
+constexpr std::array<const char*, 2> ScalarTypeNames{ "UnsignedChar", "Float" };
 constexpr double NoNumber = std::numeric_limits<double>::quiet_NaN();
 
 template <class T>
@@ -65,6 +66,27 @@ std::unique_ptr<lacuna::PhantomScene> MakeScene(vtkImageData* volume)
 }
 }
 
+// As the kernel takes them.
+struct vtkLacunaPhantomSweep::Options : lacuna::ProbeMotion::Parameters
+{
+  explicit Options(const vtkLacunaPhantomSweep* self)
+  {
+    this->Motion = static_cast<lacuna::ProbeMotion::Kind>(self->Motion);
+    this->NumberOfSlices = self->NumberOfSlices;
+    this->NumberOfSweeps = self->NumberOfSweeps;
+    this->ImageDepth = self->PixelSpacing * (self->ImageSize[1] - 1);
+    this->Travel = self->Travel;
+    this->SweepAngle = self->SweepAngle;
+    this->TwistAngle = self->TwistAngle;
+    this->FanAngle = self->FanAngle;
+    this->Wander = self->Wander;
+    this->Center = { self->Center[0], self->Center[1], self->Center[2] };
+    this->PositionNoise = self->PoseNoise[0];
+    this->AngleNoise = self->PoseNoise[1];
+    this->Seed = static_cast<std::uint64_t>(self->Seed);
+  }
+};
+
 //------------------------------------------------------------------------------
 vtkLacunaPhantomSweep::vtkLacunaPhantomSweep()
 {
@@ -88,56 +110,6 @@ int vtkLacunaPhantomSweep::FillInputPortInformation(int, vtkInformation* info)
 void vtkLacunaPhantomSweep::SetVolumeConnection(int, vtkAlgorithmOutput* volume)
 {
   this->SetInputConnection(volume);
-}
-
-//------------------------------------------------------------------------------
-lacuna::ProbeMotion vtkLacunaPhantomSweep::MakeMotion(vtkImageData* volume)
-{
-  std::ostringstream message;
-  if (this->ImageSize[0] < 1 || this->ImageSize[1] < 1)
-  {
-    message << "ImageSize is " << this->ImageSize[0] << " " << this->ImageSize[1]
-            << "; a slice needs at least 1 column and 1 row";
-    throw std::invalid_argument(message.str());
-  }
-  if (!(this->PixelSpacing > 0 && this->PixelSpacing <= 1000))
-  {
-    message << "PixelSpacing is " << this->PixelSpacing
-            << " mm; it must be above 0 and at most 1000 mm";
-    throw std::invalid_argument(message.str());
-  }
-  if (!(this->SpeckleLevel >= 0 && this->SpeckleLevel <= 10))
-  {
-    message << "SpeckleLevel is " << this->SpeckleLevel << "; it must be from 0 to 10";
-    throw std::invalid_argument(message.str());
-  }
-  if (this->OutputScalarType != UNSIGNED_CHAR && this->OutputScalarType != FLOAT)
-  {
-    message << "OutputScalarType is " << this->OutputScalarType
-            << "; it must be 0 (UnsignedChar) or 1 (Float)";
-    throw std::invalid_argument(message.str());
-  }
-  lacuna::ProbeMotion::Parameters p;
-  p.Motion = static_cast<lacuna::ProbeMotion::Kind>(this->Motion);
-  p.NumberOfSlices = this->NumberOfSlices;
-  p.NumberOfSweeps = this->NumberOfSweeps;
-  p.ImageDepth = this->PixelSpacing * (this->ImageSize[1] - 1);
-  p.Travel = this->Travel;
-  p.SweepAngle = this->SweepAngle;
-  p.TwistAngle = this->TwistAngle;
-  p.FanAngle = this->FanAngle;
-  p.Wander = this->Wander;
-  p.Center = { this->Center[0], this->Center[1], this->Center[2] };
-  if (volume)
-  {
-    double middle[3];
-    volume->GetCenter(middle);
-    p.Center = p.Center + lacuna::Vec3{ middle[0], middle[1], middle[2] };
-  }
-  p.PositionNoise = this->PoseNoise[0];
-  p.AngleNoise = this->PoseNoise[1];
-  p.Seed = static_cast<std::uint64_t>(this->Seed);
-  return lacuna::ProbeMotion(p);
 }
 
 //------------------------------------------------------------------------------
@@ -174,7 +146,8 @@ const lacuna::PhantomScene* vtkLacunaPhantomSweep::FindScene()
 //------------------------------------------------------------------------------
 void vtkLacunaPhantomSweep::Announce(const lacuna::Ports& ports)
 {
-  this->MakeMotion(nullptr);
+  lacuna::ProbeMotion(Options(this)); // throws
+  this->CheckProperties();
   this->GetScene();
   vtkInformation* info = ports.GetOutputInformation();
   const int extent[6] = { 0, this->ImageSize[0] - 1, 0, this->ImageSize[1] - 1, 0,
@@ -184,7 +157,7 @@ void vtkLacunaPhantomSweep::Announce(const lacuna::Ports& ports)
   info->Set(vtkDataObject::SPACING(), 1.0, 1.0, 1.0);
   lacuna::VolumeDirection::AnnounceAlongAxes(info);
   vtkDataObject::SetPointDataActiveScalarInfo(
-    info, this->OutputScalarType == FLOAT ? VTK_FLOAT : VTK_UNSIGNED_CHAR, 1);
+    info, this->OutputScalarType == Float ? VTK_FLOAT : VTK_UNSIGNED_CHAR, 1);
 }
 
 //------------------------------------------------------------------------------
@@ -195,14 +168,21 @@ void vtkLacunaPhantomSweep::Make(const lacuna::Ports& ports, lacuna::AlgorithmEx
   {
     throw std::runtime_error("the input volume is empty");
   }
-  const lacuna::ProbeMotion motion = this->MakeMotion(volume);
+  Options options(this);
+  if (volume)
+  {
+    double middle[3];
+    volume->GetCenter(middle);
+    options.Center = options.Center + lacuna::Vec3{ middle[0], middle[1], middle[2] };
+  }
+  const lacuna::ProbeMotion motion(options);
   const std::unique_ptr<lacuna::PhantomScene> volumeScene = volume ? MakeScene(volume) : nullptr;
   const lacuna::PhantomScene& scene = volumeScene ? *volumeScene : this->GetScene();
 
   lacuna::Extent extent = ports.GetExtent();
   auto* output = ports.GetOutput<vtkImageData>();
   const double bytes =
-    lacuna::CountPoints(extent) * (this->OutputScalarType == FLOAT ? sizeof(float) : 1);
+    lacuna::CountPoints(extent) * (this->OutputScalarType == Float ? sizeof(float) : 1);
   constexpr double BytesPerPose = 4.0 * 16 * sizeof(double);
   std::ostringstream what;
   what << "a sweep of " << this->NumberOfSlices << " slices of " << this->ImageSize[0] << " x "
@@ -213,7 +193,7 @@ void vtkLacunaPhantomSweep::Make(const lacuna::Ports& ports, lacuna::AlgorithmEx
   output->SetSpacing(1, 1, 1);
   output->SetExtent(extent.data());
   vtkDataArray* scalars = lacuna::Arrays::AddScalars(
-    output, this->OutputScalarType == FLOAT ? VTK_FLOAT : VTK_UNSIGNED_CHAR, "Intensity");
+    output, this->OutputScalarType == Float ? VTK_FLOAT : VTK_UNSIGNED_CHAR, "Intensity");
 
   const lacuna::Matrix4 imageToProbe =
     lacuna::MakeImageToProbe(this->ImageSize[0], this->PixelSpacing);
@@ -224,7 +204,7 @@ void vtkLacunaPhantomSweep::Make(const lacuna::Ports& ports, lacuna::AlgorithmEx
   imaging.Seed = static_cast<std::uint64_t>(this->Seed);
   imaging.ImageToReference = [&](std::int64_t slice)
   { return motion.TrueProbeToReference(slice) * imageToProbe; };
-  if (this->OutputScalarType == FLOAT)
+  if (this->OutputScalarType == Float)
   {
     lacuna::SampleSlices(
       execution, scene, imaging, extent, static_cast<float*>(scalars->GetVoidPointer(0)));
@@ -313,32 +293,15 @@ bool vtkLacunaPhantomSweep::AddTruth(vtkImageData* grid)
 }
 
 //------------------------------------------------------------------------------
-std::string vtkLacunaPhantomSweep::Parameters(int) const
+void vtkLacunaPhantomSweep::Describe(lacuna::Properties& properties) const
 {
-  return lacuna::ParameterText()
-    .Add("NumberOfSlices", this->NumberOfSlices)
-    .Add("ImageSize", this->ImageSize)
-    .Add("PixelSpacing", this->PixelSpacing)
-    .Add("Motion", this->Motion)
-    .Add("NumberOfSweeps", this->NumberOfSweeps)
-    .Add("SpeckleLevel", this->SpeckleLevel)
-    .Add("PoseNoise", this->PoseNoise)
-    .Add("Anatomy", this->Anatomy)
+  Options(this).Describe(properties);
+  properties.Add("ImageSize", this->ImageSize, lacuna::ValueRange::AtLeast(1, "pixels"))
+    .Add("PixelSpacing", this->PixelSpacing, lacuna::ValueRange::Above(0, "mm").UpTo(1000))
+    .Add("SpeckleLevel", this->SpeckleLevel, lacuna::SpeckleLevels)
+    .Add("PoseNoise", this->PoseNoise, lacuna::ValueRange::AtLeast(0, "mm, degrees"))
+    .Add("Anatomy", this->Anatomy, lacuna::AnatomyNames)
     .Add("Seed", this->Seed)
-    .Add("Travel", this->Travel)
-    .Add("SweepAngle", this->SweepAngle)
-    .Add("TwistAngle", this->TwistAngle)
-    .Add("FanAngle", this->FanAngle)
-    .Add("Wander", this->Wander)
-    .Add("EdgeWidth", this->EdgeWidth)
-    .Add("Center", this->Center)
-    .Add("OutputScalarType", this->OutputScalarType)
-    .Get();
-}
-
-//------------------------------------------------------------------------------
-void vtkLacunaPhantomSweep::PrintSelf(ostream& os, vtkIndent indent)
-{
-  this->Superclass::PrintSelf(os, indent);
-  os << indent << this->Parameters(0) << "\n";
+    .Add("EdgeWidth", this->EdgeWidth, lacuna::EdgeWidths)
+    .Add("OutputScalarType", this->OutputScalarType, ScalarTypeNames);
 }

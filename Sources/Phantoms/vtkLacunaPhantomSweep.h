@@ -32,7 +32,6 @@ class vtkAlgorithmOutput;
 namespace lacuna
 {
 class PhantomScene;
-class ProbeMotion;
 }
 
 class VTKLACUNASOURCESPHANTOMS_EXPORT vtkLacunaPhantomSweep
@@ -41,26 +40,25 @@ class VTKLACUNASOURCESPHANTOMS_EXPORT vtkLacunaPhantomSweep
 public:
   static vtkLacunaPhantomSweep* New();
   vtkTypeMacro(vtkLacunaPhantomSweep, vtkImageAlgorithm);
-  void PrintSelf(ostream& os, vtkIndent indent) override;
 
   enum MotionType
   {
-    SWEEP,
-    FAN,
-    TWIST,
-    ARBITRARY
+    Sweep,
+    Fan,
+    Twist,
+    Arbitrary
   };
   enum AnatomyType
   {
-    ELLIPSOIDS,
-    KUMARA,
-    VESSELS,
-    LINEAR
+    Ellipsoids,
+    Kumara,
+    Vessels,
+    Linear
   };
   enum ScalarType
   {
-    UNSIGNED_CHAR,
-    FLOAT
+    UnsignedChar,
+    Float
   };
 
   ///@{
@@ -82,7 +80,7 @@ public:
   ///@}
 
   ///@{
-  /// How the probe moves (MotionType). Default SWEEP.
+  /// How the probe moves (MotionType). Default Sweep.
   vtkSetMacro(Motion, int);
   vtkGetMacro(Motion, int);
   ///@}
@@ -108,7 +106,7 @@ public:
   ///@}
 
   ///@{
-  /// What is imaged (AnatomyType). Default ELLIPSOIDS.
+  /// What is imaged (AnatomyType). Default Ellipsoids.
   vtkSetMacro(Anatomy, int);
   vtkGetMacro(Anatomy, int);
   ///@}
@@ -120,19 +118,19 @@ public:
   ///@}
 
   ///@{
-  /// Way of the probe in motions SWEEP and ARBITRARY, mm. Default 50.
+  /// Way of the probe in motions Sweep and Arbitrary, mm. Default 50.
   vtkSetMacro(Travel, double);
   vtkGetMacro(Travel, double);
   ///@}
 
   ///@{
-  /// Whole angle swept in motions FAN and TWIST, degrees. Default 60.
+  /// Whole angle swept in motions Fan and Twist, degrees. Default 60.
   vtkSetMacro(SweepAngle, double);
   vtkGetMacro(SweepAngle, double);
   ///@}
 
   ///@{
-  /// Amplitudes in motion ARBITRARY: turning about the depth axis (degrees), tilting about the
+  /// Amplitudes in motion Arbitrary: turning about the depth axis (degrees), tilting about the
   /// lateral axis (degrees), swaying sideways (mm). Defaults 12, 8, 2.
   vtkSetMacro(TwistAngle, double);
   vtkGetMacro(TwistAngle, double);
@@ -157,7 +155,7 @@ public:
 
   ///@{
   /// Type of the grey levels (ScalarType): rounded once and limited to 0..255, or as they are.
-  /// Default UNSIGNED_CHAR.
+  /// Default UnsignedChar.
   vtkSetMacro(OutputScalarType, int);
   vtkGetMacro(OutputScalarType, int);
   ///@}
@@ -174,7 +172,7 @@ public:
   ///@{
   /// The level of the iso-surface that is exactly the surface of the object of interest (the main
   /// ellipsoid, the kumara, the vessels), and the volume in mm3 inside of it. NaN where there is no
-  /// object (LINEAR), no closed form (volume of VESSELS) or an input volume.
+  /// object (Linear), no closed form (volume of Vessels) or an input volume.
   double GetTrueIsoValue();
   double GetTrueVolume();
   ///@}
@@ -189,16 +187,16 @@ protected:
   int FillInputPortInformation(int port, vtkInformation* info) override;
   void Announce(const lacuna::Ports& ports) override;
   void Make(const lacuna::Ports& ports, lacuna::AlgorithmExecution& execution) override;
-  std::string Parameters(int port) const override;
+  void Describe(lacuna::Properties& properties) const override;
 
   int NumberOfSlices = 60;
   int ImageSize[2] = { 320, 240 };
   double PixelSpacing = 0.2;
-  int Motion = SWEEP;
+  int Motion = Sweep;
   int NumberOfSweeps = 1;
   double SpeckleLevel = 0;
   double PoseNoise[2] = { 0, 0 };
-  int Anatomy = ELLIPSOIDS;
+  int Anatomy = Ellipsoids;
   int Seed = 0;
   double Travel = 50;
   double SweepAngle = 60;
@@ -207,14 +205,14 @@ protected:
   double Wander = 2;
   double EdgeWidth = 1.5;
   double Center[3] = { 0, 0, 0 };
-  int OutputScalarType = UNSIGNED_CHAR;
+  int OutputScalarType = UnsignedChar;
 
 private:
   vtkLacunaPhantomSweep(const vtkLacunaPhantomSweep&) = delete;
   void operator=(const vtkLacunaPhantomSweep&) = delete;
 
-  // These throw std::invalid_argument when a property is out of range.
-  lacuna::ProbeMotion MakeMotion(vtkImageData* volume);
+  struct Options; // of the motion
+  // Throws std::invalid_argument when a property is out of range.
   const lacuna::PhantomScene& GetScene();
   // The scene, or nullptr when there is none or it cannot be made.
   const lacuna::PhantomScene* FindScene();

@@ -4,7 +4,6 @@
 #include "lacunaArrays.h"
 #include "lacunaCoordinates.h"
 #include "lacunaMemory.h"
-#include "lacunaParameterText.h"
 #include "lacunaSkull.h"
 #include "lacunaVolumeDirection.h"
 #include "vtkDataArray.h"
@@ -25,6 +24,22 @@ namespace
 constexpr double NoNumber = std::numeric_limits<double>::quiet_NaN();
 }
 
+// As the kernel takes them.
+struct vtkLacunaSkullPhantom::Options : lacuna::Skull::Parameters
+{
+  explicit Options(const vtkLacunaSkullPhantom* self)
+  {
+    this->Center = { self->Center[0], self->Center[1], self->Center[2] };
+    this->Spacing = { self->Spacing[0], self->Spacing[1], self->Spacing[2] };
+    this->DefectRadius = self->DefectRadius;
+    this->DefectDirection = { self->DefectDirection[0], self->DefectDirection[1],
+      self->DefectDirection[2] };
+    this->NoiseLevel = self->NoiseLevel;
+    this->Seed = static_cast<std::uint64_t>(self->Seed);
+    this->Sutures = self->Sutures;
+  }
+};
+
 //------------------------------------------------------------------------------
 vtkLacunaSkullPhantom::vtkLacunaSkullPhantom()
 {
@@ -35,18 +50,9 @@ vtkLacunaSkullPhantom::vtkLacunaSkullPhantom()
 vtkLacunaSkullPhantom::~vtkLacunaSkullPhantom() = default;
 
 //------------------------------------------------------------------------------
-lacuna::Skull vtkLacunaSkullPhantom::MakeSkull()
+lacuna::Skull vtkLacunaSkullPhantom::MakeSkull() const
 {
-  lacuna::Skull::Parameters p;
-  p.Center = { this->Center[0], this->Center[1], this->Center[2] };
-  p.Spacing = { this->Spacing[0], this->Spacing[1], this->Spacing[2] };
-  p.DefectRadius = this->DefectRadius;
-  p.DefectDirection = { this->DefectDirection[0], this->DefectDirection[1],
-    this->DefectDirection[2] };
-  p.NoiseLevel = this->NoiseLevel;
-  p.Seed = static_cast<std::uint64_t>(this->Seed);
-  p.Sutures = this->Sutures;
-  return lacuna::Skull(p);
+  return lacuna::Skull(Options(this));
 }
 
 //------------------------------------------------------------------------------
@@ -126,22 +132,7 @@ bool vtkLacunaSkullPhantom::IsInDefect(double x, double y, double z)
 }
 
 //------------------------------------------------------------------------------
-std::string vtkLacunaSkullPhantom::Parameters(int) const
+void vtkLacunaSkullPhantom::Describe(lacuna::Properties& properties) const
 {
-  return lacuna::ParameterText()
-    .Add("Spacing", this->Spacing)
-    .Add("DefectRadius", this->DefectRadius)
-    .Add("DefectDirection", this->DefectDirection)
-    .Add("NoiseLevel", this->NoiseLevel)
-    .Add("Seed", this->Seed)
-    .Add("Sutures", this->Sutures)
-    .Add("Center", this->Center)
-    .Get();
-}
-
-//------------------------------------------------------------------------------
-void vtkLacunaSkullPhantom::PrintSelf(ostream& os, vtkIndent indent)
-{
-  this->Superclass::PrintSelf(os, indent);
-  os << indent << this->Parameters(0) << "\n";
+  Options(this).Describe(properties);
 }

@@ -35,7 +35,6 @@ class VTKLACUNASOURCESPHANTOMS_EXPORT vtkLacunaSkullPhantom
 public:
   static vtkLacunaSkullPhantom* New();
   vtkTypeMacro(vtkLacunaSkullPhantom, vtkImageAlgorithm);
-  void PrintSelf(ostream& os, vtkIndent indent) override;
 
   ///@{
   /// Voxel edges, mm, above 0 and at most 5. They also set the partial-volume blur. Default 1
@@ -101,7 +100,7 @@ protected:
   ~vtkLacunaSkullPhantom() override;
   void Announce(const lacuna::Ports& ports) override;
   void Make(const lacuna::Ports& ports, lacuna::AlgorithmExecution& execution) override;
-  std::string Parameters(int port) const override;
+  void Describe(lacuna::Properties& properties) const override;
 
   double Spacing[3] = { 1, 1, 2.3 };
   double DefectRadius = 30;
@@ -115,7 +114,8 @@ private:
   vtkLacunaSkullPhantom(const vtkLacunaSkullPhantom&) = delete;
   void operator=(const vtkLacunaSkullPhantom&) = delete;
 
+  struct Options;
   // Throws std::invalid_argument when a property is out of range.
-  lacuna::Skull MakeSkull();
+  lacuna::Skull MakeSkull() const;
 };
 #endif

@@ -380,12 +380,12 @@ std::shared_ptr<Case> MakeCase(int kind, std::array<int, 3> dimensions, double p
 int main(int argc, char* argv[])
 {
   using Shape = vtkLacunaIncompleteShape;
-  RegisterAll("sphere90", MakeCase(Shape::SPHERE, { 65, 65, 65 }, 0.1));
-  RegisterAll("cube60", MakeCase(Shape::CUBE, { 84, 84, 84 }, 0.1));
-  RegisterAll("cube20", MakeCase(Shape::CUBE, { 44, 44, 44 }, 0.1));
+  RegisterAll("sphere90", MakeCase(Shape::Sphere, { 65, 65, 65 }, 0.1));
+  RegisterAll("cube60", MakeCase(Shape::Cube, { 84, 84, 84 }, 0.1));
+  RegisterAll("cube20", MakeCase(Shape::Cube, { 44, 44, 44 }, 0.1));
   for (const double outliers : { 0.0, 0.02 })
   {
-    const auto kumara = MakeCase(Shape::KUMARA, { 105, 75, 53 }, 0.4);
+    const auto kumara = MakeCase(Shape::Kumara, { 105, 75, 53 }, 0.4);
     kumara->Shape->SetPatches(true);
     kumara->Shape->SetPatchRadii(2, 5);
     kumara->Shape->SetOutlierFraction(outliers);

@@ -96,7 +96,7 @@ def sources():
         check_refused(f"Phantom Sweep {slices}", sweep)
     for n in (N, 2**31 - 1):
         shape = lacuna.vtkLacunaIncompleteShape()
-        shape.SetShape(shape.CUBE)
+        shape.SetShape(shape.Cube)
         shape.SetDimensions(n, n, n)
         check_refused(f"Incomplete Shape {n}", shape)
 

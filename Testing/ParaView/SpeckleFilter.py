@@ -144,7 +144,7 @@ def check_compounding():
         source.SetNumberOfSlices(1)
         source.SetImageSize(320, 240)
         source.SetSpeckleLevel(0.52)  # standard deviation / mean of fully developed speckle
-        source.SetOutputScalarType(source.FLOAT)
+        source.SetOutputScalarType(source.Float)
         source.SetSeed(seed)
         source.Update()
         return source.GetOutput()

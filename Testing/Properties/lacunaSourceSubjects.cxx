@@ -57,7 +57,7 @@ void AddSourceSubjects(std::vector<Subject>& subjects)
         Whole("Seed", &T::SetSeed, -5, 5) } };
     subject.Prepare = [](vtkAlgorithm* algorithm)
     {
-      Cast<T>(algorithm)->SetShape(T::SPHERE);
+      Cast<T>(algorithm)->SetShape(T::Sphere);
       Cast<T>(algorithm)->SetDimensions(30, 30, 30);
     };
     subject.Cost = 4;

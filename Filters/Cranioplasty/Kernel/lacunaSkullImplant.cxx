@@ -524,17 +524,6 @@ private:
   SkullImplant Implant;
 };
 
-void CheckRange(const char* name, double value, double low, double high, const char* unit,
-  const char* zero = nullptr)
-{
-  if (!((value >= low && value <= high) || (zero && value == 0)))
-  {
-    throw std::invalid_argument(std::string(name) + " is " + FormatNumber(value) + unit +
-      "; it must be " + (zero ? std::string("0 (") + zero + ") or " : "") + "between " +
-      FormatNumber(low) + " and " + FormatNumber(high));
-  }
-}
-
 void CheckToRim(const char* what, double distance, double least)
 {
   if (distance < least)
@@ -546,24 +535,36 @@ void CheckToRim(const char* what, double distance, double least)
 }
 
 //------------------------------------------------------------------------------
+void SkullImplantOptions::Describe(Properties& properties) const
+{
+  constexpr ValueRange Diameters = ValueRange::Between(0.5, 10, "mm");
+  constexpr ValueRange Spacings = ValueRange::Between(4, 50, "mm").OrZero("no holes");
+  properties.Add("EdgeClearance", this->EdgeClearance, ValueRange::Between(0, 5, "mm"))
+    .Add("Thickness", this->Thickness, ValueRange::Between(0.5, 20, "mm").OrZero("as the bone"))
+    .Add("MinimumThickness", this->MinimumThickness, ValueRange::Between(0, 10, "mm"))
+    .Add("InsertionDirection", this->InsertionDirection.Elements,
+      ValueRange::Any().OrZero("automatic"))
+    .Add("OuterOffset", this->OuterOffset, ValueRange::Between(-10, 10, "mm"))
+    .Add("InnerOffset", this->InnerOffset, ValueRange::Between(-10, 10, "mm"))
+    .Add("OffsetFade", this->OffsetFade, ValueRange::Between(0, 50, "mm"))
+    .Add("Parts", this->Parts, ValueRange::Between(1, 6))
+    .Add("DrainageSpacing", this->DrainageSpacing, Spacings)
+    .Add("DrainageDiameter", this->DrainageDiameter, Diameters)
+    .Add("SutureSpacing", this->SutureSpacing, Spacings)
+    .Add("SutureDiameter", this->SutureDiameter, Diameters)
+    .Add("Plates", this->Plates, ValueRange::Between(1, 12).OrZero("none"))
+    .Add("ScrewDiameter", this->ScrewDiameter, Diameters)
+    .Add("ScrewLength", this->ScrewLength, ValueRange::Between(1, 20, "mm"))
+    .Add("RimDistance", this->RimDistance, ValueRange::Between(2, 20, "mm"))
+    .Add("TriangleSize", this->TriangleSize, ValueRange::Between(0.2, 5, "mm").OrZero("automatic"));
+}
+
+//------------------------------------------------------------------------------
 void CheckSkullImplantOptions(const SkullImplantOptions& options)
 {
-  CheckRange("EdgeClearance", options.EdgeClearance, 0, 5, " mm");
-  CheckRange("TriangleSize", options.TriangleSize, 0.2, 5, " mm", "automatic");
-  CheckRange("Thickness", options.Thickness, 0.5, 20, " mm", "that of bone");
-  CheckRange("MinimumThickness", options.MinimumThickness, 0, 10, " mm");
-  CheckRange("OuterOffset", options.OuterOffset, -10, 10, " mm");
-  CheckRange("InnerOffset", options.InnerOffset, -10, 10, " mm");
-  CheckRange("OffsetFade", options.OffsetFade, 0, 50, " mm");
-  CheckRange("Parts", options.Parts, 1, 6, "");
-  CheckRange("DrainageSpacing", options.DrainageSpacing, 4, 50, " mm", "no holes");
-  CheckRange("DrainageDiameter", options.DrainageDiameter, 0.5, 10, " mm");
-  CheckRange("SutureSpacing", options.SutureSpacing, 4, 50, " mm", "no holes");
-  CheckRange("SutureDiameter", options.SutureDiameter, 0.5, 10, " mm");
-  CheckRange("Plates", options.Plates, 0, 12, "");
-  CheckRange("ScrewDiameter", options.ScrewDiameter, 0.5, 10, " mm");
-  CheckRange("ScrewLength", options.ScrewLength, 1, 20, " mm");
-  CheckRange("RimDistance", options.RimDistance, 2, 20, " mm");
+  Properties properties;
+  options.Describe(properties);
+  properties.Check();
   if (options.Plates > 0)
   {
     CheckToRim("plates", options.RimDistance,
@@ -573,10 +574,6 @@ void CheckSkullImplantOptions(const SkullImplantOptions& options)
   {
     CheckToRim(
       "holes for sutures", options.RimDistance, 0.5 * options.SutureDiameter + LeastHoleToRim);
-  }
-  if (!IsFinite(options.InsertionDirection))
-  {
-    throw std::invalid_argument("InsertionDirection is not finite");
   }
 }
 

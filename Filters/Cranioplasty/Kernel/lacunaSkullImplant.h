@@ -7,6 +7,7 @@
 #include "lacunaBoneDistance.h"
 #include "lacunaExecution.h"
 #include "lacunaPlanarTriangulation.h"
+#include "lacunaProperties.h"
 #include "lacunaSkullRays.h"
 #include "lacunaSkullShape.h"
 #include "lacunaVector.h"
@@ -21,32 +22,34 @@ namespace lacuna
 struct SkullImplantOptions
 {
   double Level = 300;         ///< grey level of bone
-  double EdgeClearance = 0.5; ///< mm between the wall of the implant and bone, 0..5
-  double TriangleSize = 1;    ///< mm, 0.2..5; half of it along the edge; 0: 1 mm
-  /// mm along the normal of the outer surface, 0.5..20; 0: that of bone, along rays.
+  double EdgeClearance = 0.5; ///< mm between the wall of the implant and bone
+  double TriangleSize = 1;    ///< mm; half of it along the edge; 0: 1 mm
+  /// mm along the normal of the outer surface; 0: that of bone, along rays.
   double Thickness = 0;
-  double MinimumThickness = 0; ///< mm, 0..10: the inner surface is moved inwards where it is less
+  double MinimumThickness = 0; ///< mm: the inner surface is moved inwards where it is less
   /// The way in which it is put in; zero: that for which the walls have the most taper.
   Vec3 InsertionDirection{ 0, 0, 0 };
-  /// mm along the normal of the outer surface, positive outwards, -10..10; each fades to 0 at the rim over
-  /// OffsetFade, 0..50 mm. MinimumThickness is kept.
+  /// mm along the normal of the outer surface, positive outwards; each fades to 0 at the rim over
+  /// OffsetFade, mm. MinimumThickness is kept.
   double OuterOffset = 0;
   double InnerOffset = 0;
   double OffsetFade = 15;
-  int Parts = 1; ///< 1..6, divided along the way in, EdgeClearance apart
-  /// Round holes along the normal of the outer surface: mm between their middles (0: none, else 4..50) and
-  /// their diameters, 0.5..10 mm. Drainage holes are on a hexagonal lattice, those for sutures along the rim.
+  int Parts = 1; ///< divided along the way in, EdgeClearance apart
+  /// Round holes along the normal of the outer surface: mm between their middles (0: none) and
+  /// their diameters. Drainage holes are on a hexagonal lattice, those for sutures along the rim.
   double DrainageSpacing = 0;
   double DrainageDiameter = 2.5;
   double SutureSpacing = 0;
   double SutureDiameter = 1.5;
-  int Plates = 0;             ///< 0..12: as many screws in the implant, and in the bone beside it
-  double ScrewDiameter = 1.5; ///< mm, 0.5..10: of the holes in the implant
-  double ScrewLength = 4;     ///< mm, 1..20: bone should be as thick
-  double RimDistance = 5;     ///< mm from the rim to the middles of holes, 2..20
+  int Plates = 0;             ///< as many screws in the implant, and in the bone beside it
+  double ScrewDiameter = 1.5; ///< mm, of the holes in the implant
+  double ScrewLength = 4;     ///< mm: bone should be as thick
+  double RimDistance = 5;     ///< mm from the rim to the middles of holes
   /// Closed curves (mm, as read: x to the right, y up) of text that is engraved into the inner face, its top towards Up.
   std::vector<std::vector<Vec2>> Text;
   Vec3 Up{ 0, 0, 1 };
+
+  void Describe(Properties& properties) const; ///< with the ranges, but for Level, Text and Up
 };
 
 /// What a triangle of the implant belongs to.

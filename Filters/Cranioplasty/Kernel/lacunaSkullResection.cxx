@@ -37,15 +37,7 @@ constexpr double MostUnsupported = 0.2;
 constexpr double MostMissing = 0.05; // of the outline: of which is told
 constexpr double FarAway = -1e3;     // mm
 constexpr double Farthest = 500;     // mm from the middle of all bone
-
-void CheckRange(const char* name, double value, double low, double high, const char* unit)
-{
-  if (!(value >= low && value <= high))
-  {
-    throw std::invalid_argument(std::string(name) + " is " + FormatNumber(value) + unit +
-      "; it must be between " + FormatNumber(low) + " and " + FormatNumber(high));
-  }
-}
+constexpr ValueRange GuideWidths = ValueRange::Between(3, 40, "mm");
 
 // Unit, square to the plane that is nearest to points around their mean, away from a place.
 Vec3 FindOut(const std::vector<Vec3>& curve, const Vec3& from)
@@ -126,16 +118,22 @@ std::vector<Vec3> ResampleCurve(const std::vector<Vec3>& curve, double spacing)
 }
 
 //------------------------------------------------------------------------------
+void ResectionOptions::Describe(Properties& properties) const
+{
+  properties.Add("Bevel", this->Bevel, ValueRange::Between(0, 45, "degrees"))
+    .Add("GuideWidth", this->GuideWidth, GuideWidths.OrZero("no guide"))
+    .Add("GuideHeight", this->GuideHeight, ValueRange::Between(2, 20, "mm"))
+    .Add("GuideClearance", this->GuideClearance, ValueRange::Between(0, 1, "mm"))
+    .Add("GuideHole", this->GuideHole, ValueRange::Between(0.5, 5, "mm").OrZero("no holes"));
+}
+
+//------------------------------------------------------------------------------
 void CheckResectionOptions(const ResectionOptions& options)
 {
-  CheckRange("Bevel", options.Bevel, 0, 45, " degrees");
-  CheckRange("GuideWidth", options.GuideWidth, 3, 40, " mm");
-  CheckRange("GuideHeight", options.GuideHeight, 2, 20, " mm");
-  CheckRange("GuideClearance", options.GuideClearance, 0, 1, " mm");
-  if (options.GuideHole != 0)
-  {
-    CheckRange("GuideHole", options.GuideHole, 0.5, 5, " mm");
-  }
+  Properties properties;
+  options.Describe(properties);
+  properties.Check();
+  GuideWidths.Check("GuideWidth", options.GuideWidth);
   // its inner wall leans outwards
   const double least = std::tan(options.Bevel * Pi / 180) * options.GuideHeight +
     std::max(LeastTop, options.GuideHole == 0 ? 0 : options.GuideHole + 2 * LeastHoleToRim);
@@ -155,7 +153,7 @@ std::vector<Vec3> FindOutlineAround(
   {
     throw std::invalid_argument("the tumour has no points");
   }
-  CheckRange("Margin", margin, LeastMargin, 50, " mm");
+  ResectionMargins.Check("Margin", margin);
   Vec3 mean{ 0, 0, 0 };
   for (const Vec3& x : points)
   {

@@ -8,6 +8,7 @@
 #include "lacunaImplantEdge.h"
 #include "lacunaMatrix4.h"
 #include "lacunaPlanarCurves.h"
+#include "lacunaProperties.h"
 #include "lacunaSkullImplant.h"
 #include "lacunaVector.h"
 #include "lacunaVoxelVolume.h"
@@ -22,23 +23,25 @@ namespace lacuna
 struct ResectionOptions
 {
   double Level = 300;          ///< grey level of bone
-  double Bevel = 10;           ///< degrees, 0..45: the cut opens outwards
-  double GuideWidth = 10;      ///< mm, 3..40
-  double GuideHeight = 5;      ///< mm, 2..20, along the direction of the cut
-  double GuideClearance = 0.2; ///< mm, 0..1, between guide and bone
-  double GuideHole = 1.5;      ///< mm, diameter of four holes for screws, 0.5..5; 0: none
+  double Bevel = 10;           ///< degrees: the cut opens outwards
+  double GuideWidth = 10;      ///< mm; 0: no guide, for which SkullResection needs another value
+  double GuideHeight = 5;      ///< mm, along the direction of the cut
+  double GuideClearance = 0.2; ///< mm, between guide and bone
+  double GuideHole = 1.5;      ///< mm, diameter of four holes for screws; 0: none
+
+  void Describe(Properties& properties) const; ///< with the ranges, but for Level
 };
 
 /// Throws std::invalid_argument that names an option out of range.
 void CheckResectionOptions(const ResectionOptions& options);
 
-/// mm: margins are wider than points all over a tumour are apart.
-constexpr double LeastMargin = 1;
+/// Margins are wider than points all over a tumour are apart.
+constexpr ValueRange ResectionMargins = ValueRange::Between(1, 50, "mm");
 
 /// A closed curve around points (world mm) such as those all over a tumour, at most 1 mm apart, margin mm away from them as
 /// seen from outside: from the mean of bone through their middle. It is as high as the highest point. Throws
 /// std::invalid_argument for no points, points around the middle of the head, parts that are farther apart than twice
-/// the margin, and a margin that is not LeastMargin..50.
+/// the margin, and a margin that is none of ResectionMargins.
 std::vector<Vec3> FindOutlineAround(
   const std::vector<Vec3>& points, double margin, const Vec3& middleOfBone);
 

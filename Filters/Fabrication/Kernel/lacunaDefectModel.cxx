@@ -16,22 +16,23 @@
 namespace lacuna
 {
 //------------------------------------------------------------------------------
-void CheckDefectModelOptions(const DefectModelOptions& o)
+void DefectModelOptions::Describe(Properties& properties) const
 {
-  const auto check = [](const char* name, double value, bool right, const std::string& range)
-  {
-    if (!std::isfinite(value) || !right)
-    {
-      throw std::invalid_argument(
-        std::string(name) + " is " + FormatNumber(value) + "; it must be a number of mm " + range);
-    }
-  };
-  const std::string block = "above 0 and at most " + FormatNumber(LargestBlock);
-  check("Margin", o.Margin, o.Margin >= 0, "from 0");
-  check("DefectDepth", o.DefectDepth, o.DefectDepth > 0 && o.DefectDepth <= LargestBlock, block);
-  check("BaseThickness", o.BaseThickness, o.BaseThickness > 0 && o.BaseThickness <= LargestBlock,
-    block);
-  check("MaximumHeight", o.MaximumHeight, o.MaximumHeight >= 0, "from 0");
+  constexpr ValueRange Block = ValueRange::Above(0, "mm").UpTo(LargestBlock);
+  properties.Add("Margin", this->Margin, ValueRange::AtLeast(0, "mm"))
+    .Add("FloorShape", static_cast<int>(this->Floor), DefectFloorNames)
+    .Add("DefectDepth", this->DefectDepth, Block)
+    .Add("BaseThickness", this->BaseThickness, Block)
+    .Add(
+      "MaximumHeight", this->MaximumHeight, ValueRange::Above(0, "mm").OrZero("as the bone needs"));
+}
+
+//------------------------------------------------------------------------------
+void CheckDefectModelOptions(const DefectModelOptions& options)
+{
+  Properties properties;
+  options.Describe(properties);
+  properties.Check();
 }
 
 //------------------------------------------------------------------------------

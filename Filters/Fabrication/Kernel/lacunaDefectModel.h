@@ -7,8 +7,10 @@
 #include "lacunaMatrix4.h"
 #include "lacunaPlanarCurves.h"
 #include "lacunaPlanarTriangulation.h"
+#include "lacunaProperties.h"
 #include "lacunaSurfaceFit.h"
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -23,14 +25,17 @@ enum class DefectFloor
   Flat,    ///< one plane, everywhere at least DefectDepth below the fit
   Parallel ///< the true normal offset of the fit by DefectDepth
 };
+inline constexpr std::array<const char*, 2> DefectFloorNames{ "Flat", "Parallel" };
 
 struct DefectModelOptions
 {
-  double Margin = 15; ///< mm of bone around the defect as seen along z, >= 0
+  double Margin = 15; ///< mm of bone around the defect as seen along z
   DefectFloor Floor = DefectFloor::Flat;
-  double DefectDepth = 10;  ///< mm, > 0
-  double BaseThickness = 5; ///< mm below the floor, > 0
+  double DefectDepth = 10;  ///< mm
+  double BaseThickness = 5; ///< mm below the floor
   double MaximumHeight = 0; ///< mm from the highest point to the base; 0: as the bone needs
+
+  void Describe(Properties& properties) const; ///< with the ranges
 };
 
 /// mm, of DefectDepth and of BaseThickness; the other two are limited by the map and by the bone.

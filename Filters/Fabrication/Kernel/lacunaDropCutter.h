@@ -108,6 +108,7 @@ enum class ToolShape
   Ball = 0, ///< ball end
   Flat = 1  ///< square end
 };
+inline constexpr std::array<const char*, 2> ToolShapeNames{ "Ball", "Flat" };
 
 /// An upright tool. Its place is its tip, the lowest point of its axis.
 struct MillTool

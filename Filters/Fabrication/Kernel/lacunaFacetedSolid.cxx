@@ -379,10 +379,7 @@ std::size_t FacetedSolid::GetNumberOfFaces() const
 //------------------------------------------------------------------------------
 FacetedSolid MakeFacetedSolid(ClosedMesh mesh, double tolerance, Execution& execution)
 {
-  if (!(tolerance >= 0 && std::isfinite(tolerance)))
-  {
-    throw std::invalid_argument("Tolerance must be 0 or more, in mm");
-  }
+  FaceTolerances.Check("Tolerance", tolerance);
   CheckClosed(mesh);
   SeparateFans(mesh);
   Simplified simple = Simplify(mesh, tolerance, execution);

@@ -6,6 +6,7 @@
 
 #include "lacunaClosedMesh.h"
 #include "lacunaExecution.h"
+#include "lacunaProperties.h"
 
 #include <cstdint>
 #include <optional>
@@ -14,6 +15,9 @@
 
 namespace lacuna
 {
+/// Of the faces' distance from the surface.
+constexpr ValueRange FaceTolerances = ValueRange::AtLeast(0, "mm");
+
 /// Flat faces that share points and edges. All lengths in mm.
 struct FacetedSolid
 {

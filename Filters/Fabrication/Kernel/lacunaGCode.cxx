@@ -27,6 +27,8 @@ constexpr const char* AxisNames = "XYZ";
 // absolute, mm/min, and after these the work offset. Before the header, which cannot change it.
 constexpr const char* SafeStart = "G21 G17 G40 G49 G80 G90 G94";
 
+constexpr ValueRange SpindleSpeeds = ValueRange::Between(1, 99999, "1/min");
+
 using Units = Micrometres;
 
 [[noreturn]] void Throw(const std::string& what)
@@ -110,22 +112,10 @@ void AddComment(std::string& program, const std::string& comment)
 //------------------------------------------------------------------------------
 void CheckOptions(const GCodeOptions& o)
 {
-  const auto check = [](const char* name, double value, double least, double largest)
-  {
-    if (!(value >= least && value <= largest))
-    {
-      Throw(std::string(name) + " is " + FormatNumber(value) + "; it must be " +
-        FormatNumber(least) + " to " + FormatNumber(largest));
-    }
-  };
-  check("ProgramNumber", o.ProgramNumber, 1, 9999);
-  check("ToolNumber", o.ToolNumber, 1, 99);
-  check("WorkOffset", o.WorkOffset, 54, 59);
-  check("SpindleSpeed", o.SpindleSpeed, 1, 99999);
-  if (o.ArcTolerance != 0)
-  {
-    check("ArcTolerance", o.ArcTolerance, 0.001, 1);
-  }
+  Properties properties;
+  o.Describe(properties);
+  properties.Check();
+  SpindleSpeeds.Check("SpindleSpeed", o.SpindleSpeed);
   for (int c = 0; o.HasEnvelope && c < 3; ++c)
   {
     if (!(o.Envelope[2 * c] <= o.Envelope[2 * c + 1]))
@@ -345,6 +335,16 @@ GCodeOptions::GCodeOptions()
   : Header(DefaultHeader())
   , Footer(DefaultFooter())
 {
+}
+
+void GCodeOptions::Describe(Properties& properties) const
+{
+  properties.Add("ProgramNumber", this->ProgramNumber, ValueRange::Between(1, 9999))
+    .Add("ToolNumber", this->ToolNumber, ValueRange::Between(1, 99))
+    .Add("WorkOffset", this->WorkOffset, ValueRange::Between(54, 59))
+    .Add("SpindleSpeed", this->SpindleSpeed, SpindleSpeeds.OrZero("of the path"))
+    .Add("LineNumbers", this->LineNumbers)
+    .Add("ArcTolerance", this->ArcTolerance, ValueRange::Between(0.001, 1, "mm").OrZero("no arcs"));
 }
 
 const char* GCodeOptions::DefaultHeader()

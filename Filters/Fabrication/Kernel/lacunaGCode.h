@@ -4,6 +4,7 @@
 #ifndef lacunaGCode_h
 #define lacunaGCode_h
 
+#include "lacunaProperties.h"
 #include "lacunaVector.h"
 
 #include <cstdint>
@@ -24,9 +25,9 @@ struct GCodeMove
 
 struct GCodeOptions
 {
-  int ProgramNumber = 1;      ///< 1..9999
-  int ToolNumber = 1;         ///< 1..99, also of its length offset
-  int WorkOffset = 54;        ///< 54..59
+  int ProgramNumber = 1;
+  int ToolNumber = 1;         ///< also of its length offset
+  int WorkOffset = 54;        ///< of G54 to G59
   double SpindleSpeed = 6000; ///< turns per minute, rounded
   bool LineNumbers = false;   ///< N10, N20 to N9990, then N10 again
   /// Lines before and after the motions, see DefaultHeader. {PROGRAM}, {TOOL} (two digits),
@@ -42,6 +43,8 @@ struct GCodeOptions
   std::vector<std::string> Comments; ///< at the top, in any characters
 
   GCodeOptions();
+  /// The numbers, with their ranges. SpindleSpeed may be 0, which MakeGCode does not take.
+  void Describe(Properties& properties) const;
   static const char* DefaultHeader();
   static const char* DefaultFooter();
 };

@@ -23,31 +23,39 @@ constexpr int RoundSteps = 8;
 }
 
 //------------------------------------------------------------------------------
+void ImplantPlateOptions::Describe(Properties& properties) const
+{
+  constexpr ValueRange Positive = ValueRange::Above(0, "mm");
+  properties.Add("Thickness", this->Thickness, Positive)
+    .Add("Side", static_cast<int>(this->Side), PlateSideNames)
+    .Add("EdgeClearance", this->EdgeClearance, ValueRange::Any("mm"))
+    .Add("EdgeShape", static_cast<int>(this->Edge), PlateEdgeNames)
+    .Add("Bevel", this->EdgeSize, Positive.OrZero("sharp edge"))
+    .Add("BevelBothFaces", this->BothFaces)
+    .Add("CornerRadius", this->CornerRadius, ValueRange::AtLeast(0, "mm"))
+    .Add("TriangleSize", this->TriangleSize, Positive.OrZero("automatic"))
+    .Add("HoleDiameter", this->Hole.Diameter, Positive)
+    .Add("CountersinkDiameter", this->Hole.CountersinkDiameter, Positive.OrZero("none"))
+    .Add("CountersinkAngle", this->Hole.CountersinkAngle, ValueRange::Between(30, 150, "degrees"))
+    .Add("DrainageSpacing", this->DrainageSpacing, Positive.OrZero("no holes"))
+    .Add("DrainageDiameter", this->DrainageDiameter, Positive);
+}
+
+//------------------------------------------------------------------------------
 void CheckPlateOptions(const ImplantPlateOptions& o)
 {
+  Properties properties;
+  o.Describe(properties);
+  properties.Check();
+  ValueRange::Above(0, "mm").Check("TriangleSize", o.TriangleSize);
   const auto fail = [](const char* name, double value, const std::string& right)
-  { throw std::invalid_argument(name + (" is " + FormatNumber(value)) + "; it must be " + right); };
-  const auto positive = [&](const char* name, double value)
   {
-    if (!(value > 0 && std::isfinite(value)))
-    {
-      fail(name, value, "a number of mm above 0");
-    }
+    throw std::invalid_argument(name + (" is " + FormatNumber(value)) + " mm; it must be " + right);
   };
-  positive("Thickness", o.Thickness);
-  positive("TriangleSize", o.TriangleSize);
-  if (!std::isfinite(o.EdgeClearance))
-  {
-    fail("EdgeClearance", o.EdgeClearance, "a number of mm");
-  }
-  if (!(o.CornerRadius >= 0 && std::isfinite(o.CornerRadius)))
-  {
-    fail("CornerRadius", o.CornerRadius, "0 mm or more");
-  }
   if (o.Edge != PlateEdge::Square)
   {
     const double most = o.BothFaces ? 0.5 * o.Thickness : o.Thickness;
-    if (!(o.EdgeSize >= 0 && o.EdgeSize <= most))
+    if (o.EdgeSize > most)
     {
       fail("Bevel", o.EdgeSize,
         "from 0 to " + FormatNumber(most) +
@@ -56,27 +64,17 @@ void CheckPlateOptions(const ImplantPlateOptions& o)
   }
   if (!o.HolePoints.empty())
   {
-    positive("HoleDiameter", o.Hole.Diameter);
     const double head = o.Hole.CountersinkDiameter;
-    if (head != 0 && !(head > o.Hole.Diameter && std::isfinite(head)))
+    if (head != 0 && head <= o.Hole.Diameter)
     {
       fail("CountersinkDiameter", head,
         "0 (none) or larger than HoleDiameter, " + FormatNumber(o.Hole.Diameter) + " mm");
     }
-    if (head != 0 && !(o.Hole.CountersinkAngle >= 30 && o.Hole.CountersinkAngle <= 150))
-    {
-      fail("CountersinkAngle", o.Hole.CountersinkAngle, "from 30 to 150 degrees");
-    }
   }
-  if (o.DrainageSpacing != 0)
+  if (o.DrainageSpacing != 0 && o.DrainageSpacing < o.DrainageDiameter + 2 * MinimumWeb)
   {
-    positive("DrainageSpacing", o.DrainageSpacing);
-    positive("DrainageDiameter", o.DrainageDiameter);
-    if (o.DrainageSpacing < o.DrainageDiameter + 2 * MinimumWeb)
-    {
-      fail("DrainageSpacing", o.DrainageSpacing,
-        "0 (no drainage) or at least DrainageDiameter + 1 mm, so that the holes stay apart");
-    }
+    fail("DrainageSpacing", o.DrainageSpacing,
+      "0 (no holes) or at least DrainageDiameter + 1 mm, so that the holes stay apart");
   }
 }
 

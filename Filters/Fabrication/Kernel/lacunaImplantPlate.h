@@ -6,7 +6,9 @@
 
 #include "lacunaPlanarTriangulation.h"
 #include "lacunaPlateOutline.h"
+#include "lacunaProperties.h"
 
+#include <array>
 #include <limits>
 #include <string>
 #include <vector>
@@ -19,6 +21,7 @@ enum class PlateSide
   Inward, ///< away from the viewer: the surface is the plate's outer face
   Outward ///< towards the viewer: the surface is the plate's inner face
 };
+inline constexpr std::array<const char*, 2> PlateSideNames{ "Inward", "Outward" };
 
 /// The form of the plate's edge.
 enum class PlateEdge
@@ -27,23 +30,27 @@ enum class PlateEdge
   Bevel, ///< a flat of 45 degrees
   Round  ///< a quarter of a circle
 };
+inline constexpr std::array<const char*, 3> PlateEdgeNames{ "Square", "Beveled", "Rounded" };
 
 struct ImplantPlateOptions
 {
-  double Thickness = 3; ///< mm, > 0
+  double Thickness = 3; ///< mm
   PlateSide Side = PlateSide::Inward;
   double EdgeClearance = 0.5; ///< mm, see PlateOutlineOptions
-  double CornerRadius = 1;    ///< mm, >= 0
+  double CornerRadius = 1;    ///< mm
   PlateEdge Edge = PlateEdge::Round;
   /// mm of width and depth of bevel or rounding at the outer face; at most the thickness, half of
   /// it when at both faces.
   double EdgeSize = 0.5;
   bool BothFaces = false;
-  double TriangleSize = 0.5;    ///< mm, > 0, of triangles seen along z
+  double TriangleSize = 0.5;    ///< mm, above 0, of triangles seen along z
   std::vector<Vec3> HolePoints; ///< near the plate, in the surface's coordinates
   HoleShape Hole;
   double DrainageSpacing = 0; ///< mm between the middles of drainage holes, 0: none
   double DrainageDiameter = 2;
+
+  /// With the ranges, but for HolePoints. TriangleSize may be 0, which MakeImplantPlate does not take.
+  void Describe(Properties& properties) const;
 };
 
 /// The least material between holes, and between a hole and the edge, mm.

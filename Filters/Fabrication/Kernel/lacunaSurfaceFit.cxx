@@ -463,10 +463,9 @@ SurfaceFit FitComponents(Execution& execution, Problem& problem, double neglecte
   const std::function<Vec3(double u, double v, const double* values)>& place,
   const std::vector<Vec3>& points, const SurfaceFitOptions& options)
 {
-  if (!(options.Tolerance >= 0 && std::isfinite(options.Tolerance)))
-  {
-    throw std::invalid_argument("the tolerance must be 0 or a positive number of mm");
-  }
+  Properties properties;
+  options.Describe(properties);
+  properties.Check();
   // Samples by u and by v, points, coordinates, and as much again for solutions.
   RequireMemory("a surface through so many samples",
     sizeof(double) * 4.0 * (problem.Components + 3) * static_cast<double>(points.size()));
@@ -562,6 +561,12 @@ std::vector<double> Parameters(const std::vector<double>& distances, const char*
   }
   return parameters;
 }
+}
+
+//------------------------------------------------------------------------------
+void SurfaceFitOptions::Describe(Properties& properties) const
+{
+  properties.Add("Tolerance", this->Tolerance, ValueRange::AtLeast(0, "mm"));
 }
 
 //------------------------------------------------------------------------------

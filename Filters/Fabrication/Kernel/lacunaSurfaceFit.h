@@ -6,6 +6,7 @@
 
 #include "lacunaBSplineSurface.h"
 #include "lacunaMatrix4.h"
+#include "lacunaProperties.h"
 
 #include <cstdint>
 #include <vector>
@@ -60,6 +61,8 @@ struct SurfaceFitOptions
   /// Largest distance in mm allowed between a sample and the surface at its parameters; as few
   /// knots are used as it takes. 0: interpolation, exact up to rounding.
   double Tolerance = 0.001;
+
+  void Describe(Properties& properties) const; ///< with the range
 };
 
 /// A fitted surface and what was achieved.

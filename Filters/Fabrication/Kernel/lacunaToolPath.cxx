@@ -30,46 +30,30 @@ void Require(bool condition, const std::string& what)
 
 void CheckOptions(const ToolPathOptions& o)
 {
-  const auto within = [](double x, double low, double high) { return x >= low && x <= high; };
-  Require(o.Tool.Radius > 0 && o.Tool.Radius <= 1000,
-    "ToolRadius is " + FormatNumber(o.Tool.Radius) + " mm; above 0 and at most 1000 is possible");
+  Properties properties;
+  o.Describe(properties);
+  properties.Check();
   const bool isAutomatic = o.RoughingStep == ToolPathOptions::AutomaticRoughing;
   Require(o.Finishing || o.RoughingStep > 0 || isAutomatic,
     "there is nothing to do: Finishing is off and RoughingStep is 0");
-  Require(o.ScallopHeight >= 0 && o.ScallopHeight < o.Tool.Radius,
-    "ScallopHeight is " + FormatNumber(o.ScallopHeight) +
-      " mm; 0 (StepOver is used) or above, and less than ToolRadius is possible");
+  Require(o.ScallopHeight < o.Tool.Radius,
+    "ScallopHeight is " + FormatNumber(o.ScallopHeight) + " mm; it must be less than ToolRadius");
   Require(o.ScallopHeight == 0 || GetStepOver(o.Tool.Radius, o.ScallopHeight) >= LeastStepOver,
     "ScallopHeight is " + FormatNumber(o.ScallopHeight) +
       " mm, which takes finishing lines less than 0.01 mm apart");
   Require(o.ScallopHeight == 0 || o.Tool.Shape == ToolShape::Ball,
     "ScallopHeight is for ball ends; give StepOver for a flat end");
-  Require(within(o.StepOver, LeastStepOver, 2 * o.Tool.Radius),
-    "StepOver is " + FormatNumber(o.StepOver) + " mm; 0.01 mm to the tool's diameter (" +
-      FormatNumber(2 * o.Tool.Radius) + " mm) is possible");
-  Require(within(o.Overrun, 0, 1000),
-    "Overrun is " + FormatNumber(o.Overrun) + " mm; 0 to 1000 is possible");
-  Require(within(o.Direction, -36000, 36000),
-    "Direction is " + FormatNumber(o.Direction) + " degrees; -36000 to 36000 is possible");
-  Require(o.PathStep == 0 || within(o.PathStep, 0.01, 1000),
-    "PathStep is " + FormatNumber(o.PathStep) +
-      " mm; 0 (the surface's spacing) or 0.01 to 1000 "
-      "is possible");
-  Require(within(o.Tolerance, 0.0001, 10),
-    "Tolerance is " + FormatNumber(o.Tolerance) + " mm; 0.0001 to 10 is possible");
-  Require(isAutomatic || o.RoughingStep == 0 || within(o.RoughingStep, 0.01, 1000),
+  const auto requireInTool = [&o](const char* name, double value)
+  {
+    Require(value <= 2 * o.Tool.Radius,
+      std::string(name) + " is " + FormatNumber(value) +
+        " mm; it must be at most the tool's diameter, " + FormatNumber(2 * o.Tool.Radius) + " mm");
+  };
+  requireInTool("StepOver", o.StepOver);
+  requireInTool("RoughingStepOver", o.RoughingStepOver);
+  Require(isAutomatic || o.RoughingStep == 0 || o.RoughingStep >= 0.01,
     "RoughingStep is " + FormatNumber(o.RoughingStep) +
-      " mm; -1 (automatic), 0 (no roughing) or 0.01 to 1000 is possible");
-  Require(o.RoughingStepOver == 0 || within(o.RoughingStepOver, 0.01, 2 * o.Tool.Radius),
-    "RoughingStepOver is " + FormatNumber(o.RoughingStepOver) +
-      " mm; 0 (the tool's radius) or 0.01 to the tool's diameter is possible");
-  Require(within(o.StockAllowance, 0, 100),
-    "StockAllowance is " + FormatNumber(o.StockAllowance) + " mm; 0 to 100 is possible");
-  Require(within(o.StockTop, -1e5, 1e5), "StockTop is not within 100 m");
-  Require(within(o.SafeHeight, 0.1, 1000),
-    "SafeHeight is " + FormatNumber(o.SafeHeight) + " mm; 0.1 to 1000 is possible");
-  Require(within(o.LeadRadius, 0, 1000),
-    "LeadRadius is " + FormatNumber(o.LeadRadius) + " mm; 0 (none) to 1000 is possible");
+      " mm; it must be -1 (automatic), 0 (no roughing) or from 0.01 to 1000 mm");
 }
 
 //------------------------------------------------------------------------------
@@ -481,6 +465,28 @@ void AddFinishing(Execution& execution, ToolPath& path, Assembler& assembler,
       options.LeadRadius > 0 },
     path.Levels, options);
 }
+}
+
+//------------------------------------------------------------------------------
+void ToolPathOptions::Describe(Properties& properties) const
+{
+  properties.Add("ToolShape", static_cast<int>(this->Tool.Shape), ToolShapeNames)
+    .Add("ToolRadius", this->Tool.Radius, ValueRange::Above(0, "mm").UpTo(1000))
+    .Add("StepOver", this->StepOver, ValueRange::AtLeast(LeastStepOver, "mm"))
+    .Add("ScallopHeight", this->ScallopHeight, ValueRange::Above(0, "mm").OrZero("StepOver"))
+    .Add("Overrun", this->Overrun, ValueRange::Between(0, 1000, "mm"))
+    .Add("Direction", this->Direction, ValueRange::Between(-36000, 36000, "degrees"))
+    .Add("Finishing", this->Finishing)
+    .Add("RoughingStep", this->RoughingStep, ValueRange::Between(AutomaticRoughing, 1000, "mm"))
+    .Add("RoughingStepOver", this->RoughingStepOver,
+      ValueRange::AtLeast(0.01, "mm").OrZero("tool's radius"))
+    .Add("StockAllowance", this->StockAllowance, ValueRange::Between(0, 100, "mm"))
+    .Add("StockTop", this->StockTop, ValueRange::Between(-1e5, 1e5, "mm"))
+    .Add("SafeHeight", this->SafeHeight, ValueRange::Between(0.1, 1000, "mm"))
+    .Add(
+      "LeadRadius", this->LeadRadius, ValueRange::Above(0, "mm").UpTo(1000).OrZero("straight down"))
+    .Add("PathStep", this->PathStep, ValueRange::Between(0.01, 1000, "mm").OrZero("of the surface"))
+    .Add("Tolerance", this->Tolerance, ValueRange::Between(0.0001, 10, "mm"));
 }
 
 //------------------------------------------------------------------------------

@@ -5,6 +5,7 @@
 #define lacunaToolPath_h
 
 #include "lacunaDropCutter.h"
+#include "lacunaProperties.h"
 
 #include <cstdint>
 #include <string>
@@ -34,6 +35,8 @@ struct ToolPathOptions
   double StockTop = 0;         ///< z; the surface's highest point if that is higher
   double SafeHeight = 5;       ///< of rapid motions above the stock
   double LeadRadius = 2;       ///< of the quarter circles into and out of finishing cuts; 0: none
+
+  void Describe(Properties& properties) const; ///< with the ranges, but for OneWay
 };
 
 /// What the machine does on the way to a point.

@@ -36,13 +36,21 @@ constexpr double LargestBlob = 1.2;
 // The cavity: a disc of radius 1 less a round-ended bay of half width 0.22 from x = 0 outwards.
 constexpr double BayHalfWidth = 0.22;
 
-void Require(bool good, const std::string& message)
-{
-  if (!good)
-  {
-    throw std::invalid_argument(message);
-  }
 }
+
+void IncompleteShape::Parameters::Describe(Properties& properties) const
+{
+  const std::vector<int> used(
+    this->Dimensions.begin(), this->Dimensions.end() - (this->IsFlat() ? 1 : 0));
+  properties.Add("Shape", static_cast<int>(this->Shape), KindNames)
+    .Add("Dimensions", used, ValueRange::AtLeast(2 * Margin + SmallestShape, "voxels"))
+    .Add("PresentFraction", this->PresentFraction, ValueRange::Above(0).UpTo(1))
+    .Add("Patches", this->Patches)
+    .Add("PatchRadii", this->PatchRadii, ValueRange::AtLeast(0, "mm"))
+    .Add("GapAngle", this->GapAngle, ValueRange::Between(0, 360, "degrees"))
+    .Add("TissueFraction", this->TissueFraction, ValueRange::Between(0, 1))
+    .Add("OutlierFraction", this->OutlierFraction, ValueRange::Between(0, 10))
+    .Add("Seed", static_cast<std::int64_t>(this->Seed)); // as given: below 0, too
 }
 
 IncompleteShape::IncompleteShape(const Parameters& parameters)
@@ -50,35 +58,27 @@ IncompleteShape::IncompleteShape(const Parameters& parameters)
   , Dimensions(parameters.Dimensions)
   , Half{}
 {
+  Properties properties;
+  this->Values.Describe(properties);
+  properties.Check();
+  if (parameters.GapAngle == 360)
+  {
+    throw std::invalid_argument("GapAngle is 360 degrees; nothing would be seen: give less");
+  }
+  const std::array<double, 2>& radii = parameters.PatchRadii;
+  if (radii[0] > radii[1])
+  {
+    throw std::invalid_argument("PatchRadii are " + FormatNumber(radii[0]) + " and " +
+      FormatNumber(radii[1]) + " mm; give the smaller one first");
+  }
   if (this->IsFlat())
   {
     this->Dimensions[2] = 1;
   }
   for (int axis = 0; axis < (this->IsFlat() ? 2 : 3); ++axis)
   {
-    const int least = 2 * Margin + SmallestShape;
-    Require(this->Dimensions[axis] >= least,
-      "Dimensions has " + std::to_string(this->Dimensions[axis]) + " along an axis; at least " +
-        std::to_string(least) + " are needed: a margin of " + std::to_string(Margin) +
-        " voxels on every side of the shape");
     this->Half[axis] = 0.5 * (this->Dimensions[axis] - 1) - Margin;
   }
-  Require(parameters.PresentFraction > 0 && parameters.PresentFraction <= 1,
-    "PresentFraction is " + std::to_string(parameters.PresentFraction) +
-      "; it must be above 0 and at most 1");
-  Require(parameters.GapAngle >= 0 && parameters.GapAngle < 360,
-    "GapAngle is " + std::to_string(parameters.GapAngle) +
-      " degrees; it must be 0 or more and below 360");
-  const std::array<double, 2>& radii = parameters.PatchRadii;
-  Require(radii[0] >= 0 && radii[0] <= radii[1] && std::isfinite(radii[1]),
-    "PatchRadii are " + std::to_string(radii[0]) + " and " + std::to_string(radii[1]) +
-      "; they must be finite, not negative, the smaller one first");
-  Require(parameters.TissueFraction >= 0 && parameters.TissueFraction <= 1,
-    "TissueFraction is " + std::to_string(parameters.TissueFraction) +
-      "; it must be between 0 and 1");
-  Require(parameters.OutlierFraction >= 0 && parameters.OutlierFraction <= 10,
-    "OutlierFraction is " + std::to_string(parameters.OutlierFraction) +
-      "; it must be between 0 and 10");
 }
 
 double IncompleteShape::GetDistance(double x, double y, double z) const

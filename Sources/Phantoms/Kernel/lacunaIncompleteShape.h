@@ -5,6 +5,7 @@
 #define lacunaIncompleteShape_h
 
 #include "lacunaExecution.h"
+#include "lacunaProperties.h"
 
 #include <array>
 #include <cstdint>
@@ -13,12 +14,12 @@
 namespace lacuna
 {
 /// A closed curve (Circle, Cavity, Blob; in the xy plane) or surface (Cube, Sphere, Kumara) in a
-/// grid of voxels of edge 1, centred in it. The shape fills the grid but for Margin voxels on every
+/// grid of voxels of edge 1 mm, centred in it. The shape fills the grid but for Margin voxels on every
 /// side. Object voxels are those whose centres are within half a voxel of it.
 class IncompleteShape
 {
 public:
-  enum Kind
+  enum Kind : int
   {
     Circle, ///< of radius a = (smallest dimension - 1) / 2 - Margin
     Cavity, ///< a disc with a deep bay that opens towards +x
@@ -27,18 +28,23 @@ public:
     Sphere, ///< of radius a
     Kumara  ///< a bent, tapered ellipsoid with a hollow side (+y), long in x
   };
+  static constexpr std::array<const char*, 6> KindNames{ "Circle", "Cavity", "Blob", "Cube",
+    "Sphere", "Kumara" };
 
   struct Parameters
   {
     Kind Shape = Circle;
     std::array<int, 3> Dimensions{ 200, 200, 200 }; ///< curves use the first two
-    double PresentFraction = 1;                     ///< of the object voxels, above 0 and at most 1
-    double GapAngle = 0;        ///< degrees, 0 <= a < 360: none in this wedge or cone about +x
-    double TissueFraction = 0;  ///< of the voxels inside, 0...1: echoes from the interior
-    double OutlierFraction = 0; ///< of the present voxels, 0...10, anywhere in the grid
+    double PresentFraction = 1;                     ///< of the object voxels
+    double GapAngle = 0;        ///< degrees, below 360: none in this wedge or cone about +x
+    double TissueFraction = 0;  ///< of the voxels inside: echoes from the interior
+    double OutlierFraction = 0; ///< of the present voxels, anywhere in the grid
     bool Patches = false;       ///< missing in patches, not voxel by voxel
-    std::array<double, 2> PatchRadii{ 3, 8 }; ///< evenly from the first to the second, voxels
+    std::array<double, 2> PatchRadii{ 3, 8 }; ///< mm, evenly from the first to the second
     std::uint64_t Seed = 0;
+
+    bool IsFlat() const { return this->Shape <= Blob; }
+    void Describe(Properties& properties) const; ///< with the ranges; curves have two Dimensions
   };
 
   static constexpr int Margin = 12;
@@ -46,7 +52,7 @@ public:
   /// Throws std::invalid_argument when a parameter is out of range, with what would be right.
   explicit IncompleteShape(const Parameters& parameters);
 
-  bool IsFlat() const { return this->Values.Shape <= Blob; }
+  bool IsFlat() const { return this->Values.IsFlat(); }
   /// Voxels in x, y, z; 1 in z for curves.
   const std::array<int, 3>& GetDimensions() const { return this->Dimensions; }
 

@@ -6,8 +6,6 @@
 
 #include <algorithm>
 #include <limits>
-#include <sstream>
-#include <stdexcept>
 #include <vector>
 
 namespace lacuna
@@ -401,13 +399,7 @@ double PhantomScene::TrueVolume() const
 
 std::unique_ptr<PhantomScene> MakePhantomScene(Anatomy anatomy, double edgeWidth)
 {
-  if (!(edgeWidth > 0 && edgeWidth <= MaximumEdgeWidth))
-  {
-    std::ostringstream message;
-    message << "EdgeWidth is " << edgeWidth << " mm; it must be above 0 and at most "
-            << MaximumEdgeWidth << " mm, or edges of neighbouring structures would overlap";
-    throw std::invalid_argument(message.str());
-  }
+  EdgeWidths.Check("EdgeWidth", edgeWidth);
   switch (anatomy)
   {
     case Anatomy::Ellipsoids:
@@ -419,7 +411,7 @@ std::unique_ptr<PhantomScene> MakePhantomScene(Anatomy anatomy, double edgeWidth
     case Anatomy::Linear:
       return std::make_unique<LinearScene>();
   }
-  throw std::invalid_argument("Anatomy is " + std::to_string(static_cast<int>(anatomy)) +
-    "; it must be 0 (Ellipsoids), 1 (Kumara), 2 (Vessels) or 3 (Linear)");
+  Choices(AnatomyNames).Check("Anatomy", static_cast<int>(anatomy)); // throws
+  return nullptr;
 }
 }

@@ -4,8 +4,10 @@
 #ifndef lacunaPhantomScene_h
 #define lacunaPhantomScene_h
 
+#include "lacunaProperties.h"
 #include "lacunaVector.h"
 
+#include <array>
 #include <memory>
 
 namespace lacuna
@@ -53,12 +55,16 @@ enum class Anatomy
   /// 130 + 1.25 x + 1.5 y - z: reproduced exactly by any linear interpolation.
   Linear
 };
+inline constexpr std::array<const char*, 4> AnatomyNames{ "Ellipsoids", "Kumara", "Vessels",
+  "Linear" };
+
+/// Wider edges would overlap, and the surfaces would no longer lie at the iso-value.
+constexpr double MaximumEdgeWidth = 4;
+constexpr ValueRange EdgeWidths = ValueRange::Above(0, "mm").UpTo(MaximumEdgeWidth);
 
 /// Edges of a scene are SmoothStep of first-order signed distance (the implicit function over the
 /// length of its gradient) and edgeWidth mm wide from 0 to 100 %. Throws std::invalid_argument
-/// unless 0 < edgeWidth <= MaximumEdgeWidth: wider edges would overlap, and the surfaces would no
-/// longer lie at the iso-value.
+/// unless edgeWidth is one of EdgeWidths.
 std::unique_ptr<PhantomScene> MakePhantomScene(Anatomy anatomy, double edgeWidth);
-constexpr double MaximumEdgeWidth = 4;
 }
 #endif

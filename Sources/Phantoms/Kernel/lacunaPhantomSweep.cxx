@@ -5,8 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
-#include <stdexcept>
 #include <vector>
 
 namespace lacuna
@@ -43,12 +41,7 @@ template <class T>
 void SampleSlices(Execution& execution, const PhantomScene& scene, const SliceImaging& imaging,
   const Extent& extent, T* pixels)
 {
-  if (!(imaging.SpeckleLevel >= 0 && imaging.SpeckleLevel <= 10))
-  {
-    std::ostringstream message;
-    message << "SpeckleLevel is " << imaging.SpeckleLevel << "; it must be from 0 to 10";
-    throw std::invalid_argument(message.str());
-  }
+  SpeckleLevels.Check("SpeckleLevel", imaging.SpeckleLevel);
   const int columns = extent[1] - extent[0] + 1;
   const std::int64_t rows = extent[3] - extent[2] + 1;
   const std::int64_t slices = extent[5] - extent[4] + 1;

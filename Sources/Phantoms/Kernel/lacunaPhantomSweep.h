@@ -7,6 +7,7 @@
 #include "lacunaExecution.h"
 #include "lacunaMatrix4.h"
 #include "lacunaPhantomScene.h"
+#include "lacunaProperties.h"
 
 #include <array>
 #include <cstdint>
@@ -19,6 +20,8 @@ using Extent = std::array<int, 6>;
 
 /// Number of points of an extent; a double, so that it cannot overflow.
 double CountPoints(const Extent& extent);
+
+constexpr ValueRange SpeckleLevels = ValueRange::Between(0, 10);
 
 /// How slices are imaged.
 struct SliceImaging

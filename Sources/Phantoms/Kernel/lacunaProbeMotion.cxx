@@ -4,8 +4,8 @@
 #include "lacunaCounterNoise.h"
 
 #include <cmath>
-#include <sstream>
 #include <stdexcept>
+#include <string>
 
 namespace lacuna
 {
@@ -14,50 +14,34 @@ namespace
 constexpr double Pi = 3.14159265358979323846;
 constexpr double Radians = Pi / 180;
 constexpr std::uint64_t PoseStream = 1;
-
-void RequireWithin(const char* name, double value, double lowest, double highest, const char* unit)
-{
-  if (value >= lowest && value <= highest)
-  {
-    return;
-  }
-  std::ostringstream message;
-  message << name << " is " << value << unit << "; it must be a number from " << lowest << " to "
-          << highest << unit;
-  throw std::invalid_argument(message.str());
 }
+
+void ProbeMotion::Parameters::Describe(Properties& properties) const
+{
+  properties.Add("NumberOfSlices", this->NumberOfSlices, ValueRange::AtLeast(1))
+    .Add("Motion", static_cast<int>(this->Motion), KindNames)
+    .Add("NumberOfSweeps", this->NumberOfSweeps, ValueRange::AtLeast(1))
+    .Add("Travel", this->Travel, ValueRange::Between(0, 1e5, "mm"))
+    .Add("SweepAngle", this->SweepAngle, ValueRange::Between(0, 360, "degrees"))
+    .Add("TwistAngle", this->TwistAngle, ValueRange::Between(0, 180, "degrees"))
+    .Add("FanAngle", this->FanAngle, ValueRange::Between(0, 180, "degrees"))
+    .Add("Wander", this->Wander, ValueRange::Between(0, 1e5, "mm"))
+    .Add("Center", this->Center.Elements, ValueRange::Between(-1e6, 1e6, "mm"));
 }
 
 ProbeMotion::ProbeMotion(const Parameters& parameters)
   : P(parameters)
 {
-  if (this->P.NumberOfSlices < 1)
-  {
-    throw std::invalid_argument("NumberOfSlices is " + std::to_string(this->P.NumberOfSlices) +
-      "; a sweep needs at least 1 slice");
-  }
-  if (this->P.NumberOfSweeps < 1 || this->P.NumberOfSweeps > this->P.NumberOfSlices)
+  Properties properties;
+  this->P.Describe(properties);
+  properties.Check();
+  ValueRange::Between(0, 1e5, "mm").Check("PoseNoise[0]", this->P.PositionNoise);
+  ValueRange::Between(0, 180, "degrees").Check("PoseNoise[1]", this->P.AngleNoise);
+  if (this->P.NumberOfSweeps > this->P.NumberOfSlices)
   {
     throw std::invalid_argument("NumberOfSweeps is " + std::to_string(this->P.NumberOfSweeps) +
       "; it must be from 1 to NumberOfSlices (" + std::to_string(this->P.NumberOfSlices) +
       "), which counts the slices of all sweeps");
-  }
-  const int kind = static_cast<int>(this->P.Motion);
-  if (kind < 0 || kind > static_cast<int>(Kind::Arbitrary))
-  {
-    throw std::invalid_argument("Motion is " + std::to_string(kind) +
-      "; it must be 0 (Sweep), 1 (Fan), 2 (Twist) or 3 (Arbitrary)");
-  }
-  RequireWithin("Travel", this->P.Travel, 0, 1e5, " mm");
-  RequireWithin("SweepAngle", this->P.SweepAngle, 0, 360, " degrees");
-  RequireWithin("TwistAngle", this->P.TwistAngle, 0, 180, " degrees");
-  RequireWithin("FanAngle", this->P.FanAngle, 0, 180, " degrees");
-  RequireWithin("Wander", this->P.Wander, 0, 1e5, " mm");
-  RequireWithin("PoseNoise[0]", this->P.PositionNoise, 0, 1e5, " mm");
-  RequireWithin("PoseNoise[1]", this->P.AngleNoise, 0, 180, " degrees");
-  for (int i = 0; i < 3; ++i)
-  {
-    RequireWithin("Center", this->P.Center[i], -1e6, 1e6, " mm");
   }
 }
 

@@ -5,7 +5,9 @@
 #define lacunaProbeMotion_h
 
 #include "lacunaMatrix4.h"
+#include "lacunaProperties.h"
 
+#include <array>
 #include <cstdint>
 
 namespace lacuna
@@ -35,22 +37,25 @@ public:
     Twist,
     Arbitrary
   };
+  static constexpr std::array<const char*, 4> KindNames{ "Sweep", "Fan", "Twist", "Arbitrary" };
 
   struct Parameters
   {
     Kind Motion = Kind::Sweep;
     std::int64_t NumberOfSlices = 60; ///< of all sweeps together
-    std::int64_t NumberOfSweeps = 1;
-    double ImageDepth = 48;    ///< mm from the first to the last row
-    double Travel = 50;        ///< mm; Sweep and Arbitrary
-    double SweepAngle = 60;    ///< degrees from end to end; Fan and Twist
-    double TwistAngle = 12;    ///< degrees, amplitude; Arbitrary
-    double FanAngle = 8;       ///< degrees, amplitude; Arbitrary
-    double Wander = 2;         ///< mm, amplitude; Arbitrary
-    Vec3 Center = { 0, 0, 0 }; ///< mm, reference frame
-    double PositionNoise = 0;  ///< mm, standard deviation along each axis
-    double AngleNoise = 0;     ///< degrees, standard deviation about each axis
+    std::int64_t NumberOfSweeps = 1;  ///< at most NumberOfSlices
+    double ImageDepth = 48;           ///< mm from the first to the last row
+    double Travel = 50;               ///< mm; Sweep and Arbitrary
+    double SweepAngle = 60;           ///< degrees from end to end; Fan and Twist
+    double TwistAngle = 12;           ///< degrees, amplitude; Arbitrary
+    double FanAngle = 8;              ///< degrees, amplitude; Arbitrary
+    double Wander = 2;                ///< mm, amplitude; Arbitrary
+    Vec3 Center = { 0, 0, 0 };        ///< mm, reference frame
+    double PositionNoise = 0;         ///< mm, standard deviation along each axis, at most 1e5
+    double AngleNoise = 0;            ///< degrees, standard deviation about each axis, at most 180
     std::uint64_t Seed = 0;
+
+    void Describe(Properties& properties) const; ///< with the ranges, but for depth, noise and seed
   };
 
   /// Throws std::invalid_argument that names the parameter and says what would be right.

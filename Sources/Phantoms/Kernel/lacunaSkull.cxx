@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <sstream>
 #include <stdexcept>
 
 namespace lacuna
@@ -257,43 +256,30 @@ struct Skull::Layers
   }
 };
 
+void Skull::Parameters::Describe(Properties& properties) const
+{
+  properties.Add("Spacing", this->Spacing.Elements, ValueRange::Above(0, "mm").UpTo(5))
+    .Add("DefectRadius", this->DefectRadius,
+      ValueRange::Above(0, "mm").UpTo(MaximumDefectRadius).OrZero("intact skull"))
+    .Add("DefectDirection", this->DefectDirection.Elements, ValueRange::Any())
+    .Add("NoiseLevel", this->NoiseLevel, ValueRange::Between(0, 1e4, "HU"))
+    .Add("Seed", static_cast<std::int64_t>(this->Seed)) // as given: below 0, too
+    .Add("Sutures", this->Sutures)
+    .Add("Center", this->Center.Elements, ValueRange::Between(-1e6, 1e6, "mm"));
+}
+
 Skull::Skull(const Parameters& parameters)
   : P(parameters)
 {
-  std::ostringstream message;
-  for (int i = 0; i < 3; ++i)
-  {
-    if (!(this->P.Spacing[i] > 0 && this->P.Spacing[i] <= 5))
-    {
-      message << "Spacing is " << this->P.Spacing[0] << " " << this->P.Spacing[1] << " "
-              << this->P.Spacing[2] << " mm; all three must be above 0 and at most 5 mm";
-      throw std::invalid_argument(message.str());
-    }
-    if (!(std::abs(this->P.Center[i]) <= 1e6))
-    {
-      message << "Center is " << this->P.Center[0] << " " << this->P.Center[1] << " "
-              << this->P.Center[2] << " mm; it must be finite and within 1e6 mm";
-      throw std::invalid_argument(message.str());
-    }
-  }
-  if (!(this->P.DefectRadius >= 0 && this->P.DefectRadius <= MaximumDefectRadius))
-  {
-    message << "DefectRadius is " << this->P.DefectRadius << " mm; it must be from 0 (intact) to "
-            << MaximumDefectRadius << " mm";
-    throw std::invalid_argument(message.str());
-  }
-  if (!(this->P.NoiseLevel >= 0 && this->P.NoiseLevel <= 1e4))
-  {
-    message << "NoiseLevel is " << this->P.NoiseLevel << " HU; it must be from 0 to 10000 HU";
-    throw std::invalid_argument(message.str());
-  }
+  Properties properties;
+  this->P.Describe(properties);
+  properties.Check();
   const double length = Norm(this->P.DefectDirection);
   if (!std::isfinite(length) || !(length > 0))
   {
-    message << "DefectDirection is " << this->P.DefectDirection[0] << " "
-            << this->P.DefectDirection[1] << " " << this->P.DefectDirection[2]
-            << "; it must be a finite vector that is not zero, for example 0 0 1 for the vertex";
-    throw std::invalid_argument(message.str());
+    throw std::invalid_argument("DefectDirection is " +
+      FormatValue(this->P.DefectDirection.Elements) +
+      "; its length must be above 0, for example 0,0,1 for the vertex");
   }
   this->Axis = (1 / length) * this->P.DefectDirection;
   // psi is counted from the patient's left (from anterior when the axis itself points sideways).

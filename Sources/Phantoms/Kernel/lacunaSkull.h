@@ -6,6 +6,7 @@
 
 #include "lacunaExecution.h"
 #include "lacunaPhantomSweep.h"
+#include "lacunaProperties.h"
 #include "lacunaVector.h"
 
 #include <array>
@@ -68,13 +69,15 @@ class Skull
 public:
   struct Parameters
   {
-    Vec3 Center = { 0, 0, 0 };    ///< mm, LPS
-    Vec3 Spacing = { 1, 1, 2.3 }; ///< voxel edges, mm
-    double DefectRadius = 30;     ///< mm, 0 = intact
-    Vec3 DefectDirection = { 0.4, -0.2, 0.9 };
-    double NoiseLevel = 0; ///< HU, standard deviation
+    Vec3 Center = { 0, 0, 0 };                 ///< mm, LPS
+    Vec3 Spacing = { 1, 1, 2.3 };              ///< voxel edges, mm
+    double DefectRadius = 30;                  ///< mm, 0 = intact
+    Vec3 DefectDirection = { 0.4, -0.2, 0.9 }; ///< not zero
+    double NoiseLevel = 0;                     ///< HU, standard deviation
     std::uint64_t Seed = 0;
     bool Sutures = false;
+
+    void Describe(Properties& properties) const; ///< with the ranges
   };
   static constexpr double MaximumDefectRadius = 40;
 

@@ -460,6 +460,7 @@ TEST(ImplantMesh, RefusesOptionsOutOfRange)
   check("ScrewDiameter", [](auto& o) { o.ScrewDiameter = 0.1; });
   check("ScrewLength", [](auto& o) { o.ScrewLength = 0; });
   check("RimDistance", [](auto& o) { o.RimDistance = 1; });
+  check("InsertionDirection", [](auto& o) { o.InsertionDirection[1] = std::nan(""); });
   // holes that would cross the rim
   check("RimDistance", [](auto& o) { o.SutureSpacing = 10, o.SutureDiameter = 10; });
   check("RimDistance", [](auto& o) { o.Plates = 4, o.ScrewDiameter = 10; });

@@ -293,6 +293,7 @@ TEST(SkullResection, RefusesWhatCannotBeCut)
   };
   EXPECT_THROW(guide(45, 10, 12, 0), std::invalid_argument);
   EXPECT_THROW(guide(10, 5, 5, 5), std::invalid_argument);
+  EXPECT_THROW(guide(0, 0, 5, 0), std::invalid_argument); // no guide at all
   EXPECT_NO_THROW(guide(45, 15, 12, 0));
   EXPECT_THROW(lacuna::FindOutlineAround({}, 5, {}), std::invalid_argument);
   EXPECT_THROW(

@@ -428,10 +428,13 @@ void CheckError(const std::function<void(vtkLacunaSkullBone*)>& set, const std::
 void TestErrors()
 {
   CheckError([](auto* f) { f->SetLevel(1500); }, "no voxel is at or above Level, 1500");
-  CheckError([](auto* f) { f->SetLevel(std::nan("")); }, "finite");
-  CheckError([](auto* f) { f->SetBridgeDiameter(20.5); }, "BridgeDiameter is 20.5 mm");
-  CheckError([](auto* f) { f->SetBridgeDiameter(-1); }, "between 0 and 20");
-  CheckError([](auto* f) { f->SetBridgeDiameter(std::nan("")); }, "between 0 and 20");
+  CheckError(
+    [](auto* f) { f->SetLevel(std::nan("")); }, "Level is nan HU; it must be a finite number");
+  CheckError([](auto* f) { f->SetBridgeDiameter(20.5); },
+    "BridgeDiameter is 20.5 mm; it must be 0 (none) or above 0 and at most 20 mm");
+  CheckError([](auto* f) { f->SetBridgeDiameter(-1); }, "0 (none) or above 0 and at most 20");
+  CheckError(
+    [](auto* f) { f->SetBridgeDiameter(std::nan("")); }, "0 (none) or above 0 and at most 20");
   CheckError([](auto* f) { f->SetBridgeDiameter(5); }, "smooth vault"); // a head of 48 mm
   CheckError(
     [](auto* f)

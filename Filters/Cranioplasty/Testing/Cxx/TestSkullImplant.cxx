@@ -377,13 +377,17 @@ void CheckError(const std::function<void(vtkLacunaSkullImplant*)>& change, const
 void TestErrors()
 {
   CheckError([](auto* f) { f->SetLevel(-1); }, "Level is -1");
-  CheckError([](auto* f) { f->SetDefectChoice(2); }, "DefectChoice is 2");
+  CheckError([](auto* f) { f->SetDefectChoice(2); },
+    "DefectChoice is 2; it must be 0 (Largest) or 1 (Nearest to Point)");
   CheckError([](auto* f) { f->SetEdgeClearance(6); }, "EdgeClearance is 6");
-  CheckError([](auto* f) { f->SetThickness(0.4); }, "Thickness is 0.4");
+  CheckError([](auto* f) { f->SetThickness(0.4); },
+    "Thickness is 0.4 mm; it must be 0 (as the bone) or from 0.5 to 20 mm");
   CheckError([](auto* f) { f->SetMinimumThickness(11); }, "MinimumThickness is 11");
   CheckError([](auto* f) { f->SetTriangleSize(0.1); }, "TriangleSize is 0.1");
-  CheckError([](auto* f) { f->SetDensity(0); }, "Density is 0");
-  CheckError([](auto* f) { f->SetTemplateLevel(-1); }, "TemplateLevel is -1");
+  CheckError(
+    [](auto* f) { f->SetDensity(0); }, "Density is 0 g/cm\u00b3; it must be above 0 g/cm\u00b3");
+  CheckError([](auto* f) { f->SetTemplateLevel(-1); },
+    "TemplateLevel is -1 HU; it must be 0 (as Level) or above 0 HU");
   CheckError(
     [](auto* f)
     {

@@ -177,7 +177,7 @@ void TestErrors()
     };
   };
   CheckError(mask([](const Vec3&) { return false; }), "the tumour is empty");
-  CheckError(mask(IsInEllipsoid, 0), "Margin is 0 mm; it must be between 1 and 50");
+  CheckError(mask(IsInEllipsoid, 0), "Margin is 0 mm; it must be from 1 to 50 mm");
   CheckError(mask([](const Vec3& x) { return std::hypot(std::abs(x[0]) - 15, x[1], x[2]) < 5; }, 2),
     "the tumour is in 2 parts");
   CheckError([](auto* cut) { cut->SetInputData(1, MakeRing(2)); }, "the outline has 2 lines");

@@ -204,7 +204,7 @@ TEST(DefectModel, NamesWhatCannotBeMade)
   says("Margin is -1", [](O& o) { o.Margin = -1; });
   says("DefectDepth is 0", [](O& o) { o.DefectDepth = 0; });
   says("BaseThickness is", [](O& o) { o.BaseThickness = std::nan(""); });
-  says("DefectDepth is 1e+05; it must be a number of mm above 0 and at most 1000",
+  says("DefectDepth is 1e+05 mm; it must be above 0 and at most 1000 mm",
     [](O& o) { o.DefectDepth = 1e5; });
   says("DefectDepth is 1e+300", [](O& o) { o.DefectDepth = 1e300; });
   says("BaseThickness is 1001", [](O& o) { o.BaseThickness = 1001; });

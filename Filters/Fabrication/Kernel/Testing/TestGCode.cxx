@@ -142,6 +142,7 @@ TEST(GCode, Refuses)
   ExpectError([](auto&, auto& o) { o.ToolNumber = 100; }, "ToolNumber");
   ExpectError([](auto&, auto& o) { o.WorkOffset = 60; }, "WorkOffset");
   ExpectError([&](auto&, auto& o) { o.SpindleSpeed = nan; }, "SpindleSpeed");
+  ExpectError([](auto&, auto& o) { o.SpindleSpeed = 0; }, "SpindleSpeed is 0 1/min");
   ExpectError([&](auto&, auto& o) { o.ArcTolerance = nan; }, "ArcTolerance");
   ExpectError([](auto&, auto& o) { o.ArcTolerance = -0.01; }, "ArcTolerance");
   ExpectError([](auto&, auto& o) { o.ArcTolerance = 2; }, "ArcTolerance");

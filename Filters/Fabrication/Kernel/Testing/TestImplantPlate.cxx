@@ -396,6 +396,8 @@ TEST(ImplantPlate, NamesWhatCannotBeMade)
       o.Hole.CountersinkDiameter = 7.9;
     });
   says("DrainageSpacing is 2", [](O& o) { o.DrainageSpacing = 2; });
+  says("HoleDiameter is 0 mm; it must be above 0 mm", [](O& o) { o.Hole.Diameter = 0; });
+  says("TriangleSize is 0 mm; it must be above 0 mm", [](O& o) { o.TriangleSize = 0; });
 
   // bends away from the viewer with a radius of 5 mm at (0, 0): no way outwards
   PlateScene pit([](double x, double y)

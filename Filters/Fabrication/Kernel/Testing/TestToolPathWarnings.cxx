@@ -156,7 +156,12 @@ TEST(ToolPathWarnings, RefusesBadInput)
   EXPECT_EQ(refuses([](auto&) {}), "no error");
   EXPECT_NE(refuses([](auto& o) { o.Tool.Radius = 0; }).find("ToolRadius"), std::string::npos);
   EXPECT_NE(refuses([&](auto& o) { o.Tool.Radius = nan; }).find("ToolRadius"), std::string::npos);
-  EXPECT_NE(refuses([](auto& o) { o.StepOver = 9; }).find("StepOver"), std::string::npos);
+  EXPECT_EQ(refuses([](auto& o) { o.StepOver = 9; }),
+    "StepOver is 9 mm; it must be at most the tool's diameter, 8 mm");
+  EXPECT_EQ(refuses([](auto& o) { o.RoughingStepOver = 9; }),
+    "RoughingStepOver is 9 mm; it must be at most the tool's diameter, 8 mm");
+  EXPECT_NE(refuses([](auto& o) { o.StepOver = 0; }).find("0.01 mm or more"), std::string::npos);
+  EXPECT_NE(refuses([](auto& o) { o.RoughingStep = 0.005; }).find("0.01 to"), std::string::npos);
   EXPECT_NE(refuses([](auto& o) { o.ScallopHeight = 4; }).find("ScallopHeight"), std::string::npos);
   EXPECT_NE(
     refuses([](auto& o) { o.ScallopHeight = 1e-40; }).find("ScallopHeight"), std::string::npos);

@@ -164,8 +164,9 @@ void TestBadMaps(const std::string& path)
               map->GetPointData()->AddArray(three);
             }),
     path, "components", input);
-  Refuses(Map(Geometry({ 0, 0, -1 }, 0), true), path, "tolerance", input, -1);
-  Refuses(Map(Geometry({ 0, 0, -1 }, 0), true), path, "tolerance", input, NaN);
+  Refuses(Map(Geometry({ 0, 0, -1 }, 0), true), path, "Tolerance is -1 mm; it must be 0 mm or more",
+    input, -1);
+  Refuses(Map(Geometry({ 0, 0, -1 }, 0), true), path, "Tolerance is nan mm", input, NaN);
   vtkNew<vtkImageData> empty;
   Refuses(empty, path, "a depth map", input);
 }

@@ -36,7 +36,7 @@ void TestGroups()
   }
   LACUNA_CHECK_THAT((names == std::vector<std::string>{ "Implant", "Bar" }), "names of blocks");
   LACUNA_CHECK_THAT(NameOf(file, *OfType(file, 102).back()) == "Rest/Block 2", "without name");
-  for (const char* words : { "Of=map", "Of=grid", "DefectOutline=1", "Levels: 1 surfaces" })
+  for (const char* words : { "Of=map", "Of=grid", "DefectOutline=Curve", "Levels: 1 surfaces" })
   {
     LACUNA_CHECK_THAT(outcome.Text.find(words) != std::string::npos, words);
   }

@@ -9,7 +9,10 @@
 #include "vtkPolyData.h"
 #include "vtkUnsignedCharArray.h"
 
+#include <algorithm>
+#include <cstddef>
 #include <functional>
+#include <string>
 
 namespace
 {
@@ -213,7 +216,13 @@ void TestMarks()
     LACUNA_CHECK_NEAR(lacuna::Norm(center - expected[k]), 0.7, 0.05);
   }
   const auto steps = lacuna::Provenance::Get(plate);
-  LACUNA_CHECK(!steps.empty() && steps.back().find("HolePoints=") != std::string::npos);
+  LACUNA_CHECK(!steps.empty());
+  const std::string step = steps.empty() ? std::string() : steps.back();
+  LACUNA_CHECK(step.find(" Side=Inward EdgeClearance=") != std::string::npos);
+  const std::size_t drilled = step.find(" HolePoints="); // those of marks, too
+  LACUNA_CHECK(drilled != std::string::npos);
+  const std::string holes = step.substr(std::min(drilled, step.size()));
+  LACUNA_CHECK(std::count(holes.begin(), holes.begin() + holes.find(" Min"), ',') == 8);
 
   points->InsertPoint(19, std::nan(""), 0, 0);
   marks->Modified();

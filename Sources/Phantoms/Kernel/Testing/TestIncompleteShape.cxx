@@ -178,11 +178,21 @@ TEST(IncompleteShape, RefusesBadParameters)
     change(p);
     EXPECT_THROW(IncompleteShape shape(p), std::invalid_argument);
   };
+  refused([](Parameters& p) { p.Shape = static_cast<IncompleteShape::Kind>(6); });
   refused([](Parameters& p) { p.Dimensions = { 27, 200, 200 }; });
+  refused(
+    [](Parameters& p)
+    {
+      p.Shape = IncompleteShape::Cube;
+      p.Dimensions = { 200, 200, 27 };
+    });
   refused([](Parameters& p) { p.PresentFraction = 0; });
   refused([](Parameters& p) { p.PresentFraction = 1.1; });
   refused([](Parameters& p) { p.GapAngle = 360; });
   refused([](Parameters& p) { p.OutlierFraction = -1; });
   refused([](Parameters& p) { p.PresentFraction = std::nan(""); });
+  Parameters curve; // has two dimensions
+  curve.Dimensions = { 200, 200, 1 };
+  EXPECT_EQ(IncompleteShape(curve).GetDimensions()[2], 1);
 }
 }

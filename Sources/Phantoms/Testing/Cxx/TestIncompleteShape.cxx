@@ -11,11 +11,12 @@
 
 #include <cmath>
 #include <sstream>
+#include <string>
 
 int TestIncompleteShape(int, char*[])
 {
   vtkNew<vtkLacunaIncompleteShape> source;
-  source->SetShape(vtkLacunaIncompleteShape::SPHERE);
+  source->SetShape(vtkLacunaIncompleteShape::Sphere);
   source->SetDimensions(61, 64, 67);
   source->SetPresentFraction(0.5);
   source->Update();
@@ -24,7 +25,9 @@ int TestIncompleteShape(int, char*[])
   LACUNA_CHECK(whole->GetDimensions()[2] == 67 && whole->GetOrigin()[0] == -30);
   LACUNA_CHECK_NEAR(whole->GetFieldData()->GetArray("CompleteVolume")->GetComponent(0, 0),
     4 * M_PI / 3 * 18 * 18 * 18 / 1000, 1e-9);
-  LACUNA_CHECK(lacuna::Provenance::Get(whole).size() == 1);
+  LACUNA_CHECK(lacuna::Provenance::Get(whole).size() == 1 &&
+    lacuna::Provenance::Get(whole)[0].find(" Shape=Sphere Dimensions=61,64,67 ") !=
+      std::string::npos);
   vtkDataArray* data = whole->GetPointData()->GetArray("Data");
   int present = 0;
   for (vtkIdType i = 0; i < whole->GetNumberOfPoints(); ++i)
@@ -67,8 +70,12 @@ int TestIncompleteShape(int, char*[])
   curve->Update();
   LACUNA_CHECK(messages->HasError("PresentFraction is 0"));
   LACUNA_CHECK(std::isnan(curve->EvaluateDistance(0, 0, 0)));
+  curve->SetPresentFraction(1);
+  curve->SetShape(6);
+  curve->Update();
+  LACUNA_CHECK(messages->HasError("Shape is 6; it must be 0 (Circle), 1 (Cavity)"));
   std::ostringstream text;
   curve->Print(text);
-  LACUNA_CHECK(text.str().find("GapAngle: 40") != std::string::npos);
+  LACUNA_CHECK(text.str().find("GapAngle: 40 (from 0 to 360 degrees)") != std::string::npos);
   return lacunaCheck::Result();
 }

@@ -39,7 +39,8 @@ void TestDefaults()
     bounds[0] == 0 && bounds[1] == 319 && bounds[5] == 59, "coordinates are indices");
   std::ostringstream text;
   sweep->Print(text);
-  LACUNA_CHECK_THAT(text.str().find("NumberOfSlices=60") != std::string::npos, "PrintSelf");
+  LACUNA_CHECK_THAT(
+    text.str().find("NumberOfSlices: 60 (1 or more)") != std::string::npos, "PrintSelf");
 }
 
 // The arrays of the contract, and pixels that are the truth where the arrays say they are.
@@ -135,9 +136,9 @@ void TestPieces()
   vtkNew<vtkLacunaPhantomSweep> sweep;
   sweep->SetNumberOfSlices(10);
   sweep->SetImageSize(40, 30);
-  sweep->SetMotion(vtkLacunaPhantomSweep::ARBITRARY);
+  sweep->SetMotion(vtkLacunaPhantomSweep::Arbitrary);
   sweep->SetSpeckleLevel(0.2);
-  sweep->SetOutputScalarType(vtkLacunaPhantomSweep::FLOAT);
+  sweep->SetOutputScalarType(vtkLacunaPhantomSweep::Float);
   sweep->Update();
   vtkNew<vtkImageData> whole;
   whole->DeepCopy(sweep->GetOutput());
@@ -146,9 +147,9 @@ void TestPieces()
   vtkNew<vtkLacunaPhantomSweep> same;
   same->SetNumberOfSlices(10);
   same->SetImageSize(40, 30);
-  same->SetMotion(vtkLacunaPhantomSweep::ARBITRARY);
+  same->SetMotion(vtkLacunaPhantomSweep::Arbitrary);
   same->SetSpeckleLevel(0.2);
-  same->SetOutputScalarType(vtkLacunaPhantomSweep::FLOAT);
+  same->SetOutputScalarType(vtkLacunaPhantomSweep::Float);
   same->UpdateExtent(extent);
   vtkImageData* part = same->GetOutput();
   LACUNA_CHECK_THAT(
@@ -197,8 +198,8 @@ void TestVolumeInput()
   sweep->SetImageSize(60, 40);
   sweep->SetPixelSpacing(1.3);
   sweep->SetTravel(120); // leaves the volume at both ends
-  sweep->SetMotion(vtkLacunaPhantomSweep::ARBITRARY);
-  sweep->SetOutputScalarType(vtkLacunaPhantomSweep::FLOAT);
+  sweep->SetMotion(vtkLacunaPhantomSweep::Arbitrary);
+  sweep->SetOutputScalarType(vtkLacunaPhantomSweep::Float);
   sweep->Update();
   vtkImageData* output = sweep->GetOutput();
   const lacuna::TrackedSlices slices(output);
@@ -252,7 +253,7 @@ void TestTruth()
   }
   LACUNA_CHECK_THAT(std::abs(sweep->GetTrueVolume() - 12817.698) < 1e-3, "TrueVolume");
   LACUNA_CHECK_THAT(sweep->GetTrueIsoValue() == 120, "TrueIsoValue");
-  sweep->SetAnatomy(vtkLacunaPhantomSweep::LINEAR);
+  sweep->SetAnatomy(vtkLacunaPhantomSweep::Linear);
   LACUNA_CHECK_THAT(sweep->EvaluateTruth(4, -2, 8) == 124, "linear");
   LACUNA_CHECK_THAT(std::isnan(sweep->EvaluateTruth(std::nan(""), 0, 0)), "truth of nowhere");
 }
@@ -268,8 +269,10 @@ void TestErrors()
   const double nan = std::nan("");
   for (const Case& c : { Case{ "NumberOfSlices is 0", [](S s) { s->SetNumberOfSlices(0); } },
          Case{ "NumberOfSweeps is 61", [](S s) { s->SetNumberOfSweeps(61); } },
-         Case{ "ImageSize is 0 240", [](S s) { s->SetImageSize(0, 240); } },
-         Case{ "ImageSize is 320 -1", [](S s) { s->SetImageSize(320, -1); } },
+         Case{ "ImageSize is 0 pixels; it must be 1 pixels or more",
+           [](S s) { s->SetImageSize(0, 240); } },
+         Case{ "ImageSize is -1 pixels; it must be 1 pixels or more",
+           [](S s) { s->SetImageSize(320, -1); } },
          Case{ "PixelSpacing is -0.2", [](S s) { s->SetPixelSpacing(-0.2); } },
          Case{ "PixelSpacing is nan", [=](S s) { s->SetPixelSpacing(nan); } },
          Case{ "Motion is 9", [](S s) { s->SetMotion(9); } },

@@ -129,10 +129,12 @@ void TestErrors()
   };
   using S = vtkLacunaSkullPhantom*;
   const double nan = std::nan("");
-  for (const Case& c : { Case{ "Spacing is -1 1 2.3", [](S s) { s->SetSpacing(-1, 1, 2.3); } },
+  for (const Case& c : { Case{ "Spacing is -1 mm; it must be above 0 and at most 5 mm",
+                           [](S s) { s->SetSpacing(-1, 1, 2.3); } },
          Case{ "Spacing is nan", [=](S s) { s->SetSpacing(nan, 1, 1); } },
          Case{ "DefectRadius is 400", [](S s) { s->SetDefectRadius(400); } },
-         Case{ "DefectDirection is 0 0 0", [](S s) { s->SetDefectDirection(0, 0, 0); } },
+         Case{ "DefectDirection is 0,0,0; its length must be above 0",
+           [](S s) { s->SetDefectDirection(0, 0, 0); } },
          Case{ "NoiseLevel is -1", [](S s) { s->SetNoiseLevel(-1); } },
          Case{ "Center is nan", [=](S s) { s->SetCenter(nan, 0, 0); } },
          Case{ "would need", [](S s) { s->SetSpacing(1e-3, 1e-3, 1e-3); } },
@@ -158,7 +160,10 @@ void TestErrors()
     "no truth with a bad property");
   std::ostringstream text;
   skull->Print(text);
-  LACUNA_CHECK_THAT(text.str().find("DefectRadius=30") != std::string::npos, "PrintSelf");
+  LACUNA_CHECK_THAT(
+    text.str().find("DefectRadius: 30 (0 (intact skull) or above 0 and at most 40 mm)") !=
+      std::string::npos,
+    "PrintSelf");
 }
 }
 
