@@ -218,7 +218,7 @@ void TestMarks()
   const auto steps = lacuna::Provenance::Get(plate);
   LACUNA_CHECK(!steps.empty());
   const std::string step = steps.empty() ? std::string() : steps.back();
-  LACUNA_CHECK(step.find(" Side=Inward EdgeClearance=") != std::string::npos);
+  LACUNA_CHECK(step.find(" Side=Outward EdgeClearance=") != std::string::npos);
   const std::size_t drilled = step.find(" HolePoints="); // those of marks, too
   LACUNA_CHECK(drilled != std::string::npos);
   const std::string holes = step.substr(std::min(drilled, step.size()));
