@@ -12,6 +12,7 @@
 #include "vtkSmartPointer.h"
 #include "vtkTypeInt64Array.h"
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdlib>
 #include <limits>
@@ -106,6 +107,18 @@ void SetTriangles(vtkPolyData* output, vtkTypeInt64Array* corners)
   vtkNew<vtkCellArray> triangles;
   triangles->SetData(offsets, corners);
   output->SetPolys(triangles);
+}
+
+void SetTriangles(vtkPolyData* output, const std::vector<std::array<std::int32_t, 3>>& triangles)
+{
+  vtkNew<vtkTypeInt64Array> corners;
+  SetNumberOfTuples(corners, 3 * static_cast<vtkIdType>(triangles.size()));
+  vtkTypeInt64* to = corners->GetPointer(0);
+  for (const std::array<std::int32_t, 3>& triangle : triangles)
+  {
+    to = std::copy(triangle.begin(), triangle.end(), to);
+  }
+  SetTriangles(output, corners);
 }
 
 //------------------------------------------------------------------------------

@@ -8,6 +8,10 @@
 #include "vtkLacunaFiltersCommonModule.h" // for export macro
 #include "vtkType.h"
 
+#include <array>
+#include <cstdint>
+#include <vector>
+
 class vtkAbstractArray;
 class vtkCellArray;
 class vtkDataArray;
@@ -34,8 +38,12 @@ VTKLACUNAFILTERSCOMMON_EXPORT void Reserve(vtkCellArray* cells, vtkIdType count,
 /// Copies name, components and values; the types may differ.
 VTKLACUNAFILTERSCOMMON_EXPORT void Copy(vtkAbstractArray* from, vtkAbstractArray* to);
 
-/// Makes triangles the polygons of output: the three point numbers of one after those of the other.
+///@{
+/// Makes triangles the polygons of output. corners: the three point numbers of one after those of the other.
 VTKLACUNAFILTERSCOMMON_EXPORT void SetTriangles(vtkPolyData* output, vtkTypeInt64Array* corners);
+VTKLACUNAFILTERSCOMMON_EXPORT void SetTriangles(
+  vtkPolyData* output, const std::vector<std::array<std::int32_t, 3>>& triangles);
+///@}
 
 /// Gives an image scalars of one component, one for each of its points, whose values are not set.
 VTKLACUNAFILTERSCOMMON_EXPORT vtkDataArray* AddScalars(

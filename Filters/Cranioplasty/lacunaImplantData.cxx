@@ -362,19 +362,15 @@ double SetTriangles(
     volume +=
       Dot(positions[t[0]] - first, Cross(positions[t[1]] - first, positions[t[2]] - first)) / 6;
   }
-  const auto count = static_cast<vtkIdType>(triangles.size());
-  vtkNew<vtkTypeInt64Array> corners;
-  lacuna::Arrays::SetNumberOfTuples(corners, 3 * count);
-  for (vtkIdType k = 0; k < count; ++k)
+  if (volume < 0)
   {
-    if (volume < 0)
+    for (Triangle& t : triangles)
     {
-      std::swap(triangles[k][1], triangles[k][2]);
+      std::swap(t[1], t[2]);
     }
-    std::copy_n(triangles[k].begin(), 3, corners->GetPointer(3 * k));
   }
   output->SetPoints(points);
-  lacuna::Arrays::SetTriangles(output, corners);
+  lacuna::Arrays::SetTriangles(output, triangles);
   return std::abs(volume);
 }
 

@@ -10,7 +10,6 @@
 #include "vtkNew.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
-#include "vtkTypeInt64Array.h"
 #include "vtkUnsignedCharArray.h"
 
 namespace lacuna
@@ -30,21 +29,15 @@ void Set(vtkPolyData* output, const Solid& solid, const Matrix4& toOutput, const
     points->SetPoint(static_cast<vtkIdType>(k), toOutput.Point(solid.Points[k]).data());
   }
   const auto count = static_cast<vtkIdType>(solid.Triangles.size());
-  vtkNew<vtkTypeInt64Array> corners;
-  Arrays::SetNumberOfTuples(corners, 3 * count);
   vtkNew<vtkUnsignedCharArray> faces;
   faces->SetName(facesName);
   Arrays::SetNumberOfTuples(faces, count);
   for (vtkIdType k = 0; k < count; ++k)
   {
-    for (int corner = 0; corner < 3; ++corner)
-    {
-      corners->SetValue(3 * k + corner, solid.Triangles[k][corner]);
-    }
     faces->SetValue(k, static_cast<unsigned char>(solid.Faces[k]));
   }
   output->SetPoints(points);
-  Arrays::SetTriangles(output, corners);
+  Arrays::SetTriangles(output, solid.Triangles);
   output->GetCellData()->SetScalars(faces);
 }
 }

@@ -586,3 +586,33 @@ void lacuna::SurfacePoints::Check() const
       ", so that the solid has no height; add outlines in other planes");
   }
 }
+
+//------------------------------------------------------------------------------
+std::array<double, 6> lacuna::SurfacePoints::GetBounds() const
+{
+  const Vec3& first = this->Data.Points[0];
+  std::array<double, 6> bounds{ first[0], first[0], first[1], first[1], first[2], first[2] };
+  for (const std::vector<Vec3>* list : { &this->Data.Points, &this->Inside })
+  {
+    for (const Vec3& x : *list)
+    {
+      for (int c = 0; c < 3; ++c)
+      {
+        bounds[2 * c] = std::min(bounds[2 * c], x[c]);
+        bounds[2 * c + 1] = std::max(bounds[2 * c + 1], x[c]);
+      }
+    }
+  }
+  return bounds;
+}
+
+//------------------------------------------------------------------------------
+double lacuna::SurfacePoints::FindSpacing(Execution& execution) const
+{
+  std::vector<Vec3> points = this->Data.Points;
+  std::sort(points.begin(), points.end(),
+    [](const Vec3& a, const Vec3& b)
+    { return std::lexicographical_compare(a.data(), a.data() + 3, b.data(), b.data() + 3); });
+  points.erase(std::unique(points.begin(), points.end()), points.end());
+  return FindPointSpacing(execution, points);
+}

@@ -7,6 +7,7 @@
 #include "lacunaSurfaceSpline.h"
 #include "vtkType.h"
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -37,6 +38,12 @@ public:
   /// After all inputs: throws std::runtime_error when outlines are all there is, in one plane, and when no
   /// input has SideArray.
   void Check() const;
+
+  /// Of the points and of Inside; there must be a point.
+  std::array<double, 6> GetBounds() const;
+
+  /// mm between neighbouring points; those that repeat others do not count.
+  double FindSpacing(Execution& execution) const;
 
   OrientedPoints Data;
   std::vector<Vec3> Inside; ///< places that SideArray says lie there

@@ -24,13 +24,11 @@
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
-#include "vtkTypeInt64Array.h"
 
 #include <algorithm>
 #include <array>
 #include <chrono>
 #include <cmath>
-#include <iterator>
 #include <memory>
 #include <sstream>
 #include <stdexcept>
@@ -57,24 +55,6 @@ constexpr double LargestTolerance = 0.05; // of the edge
 constexpr double ManyMissed = 0.02;       // RMS residual, of the extent
 // Of all points, with an opposite normal beside them: above, these are not merely thin walls.
 constexpr double MostOpposed = 0.02;
-
-std::array<double, 6> GetBounds(const std::vector<Vec3>& points, const std::vector<Vec3>& more)
-{
-  std::array<double, 6> bounds{ points[0][0], points[0][0], points[0][1], points[0][1],
-    points[0][2], points[0][2] };
-  for (const std::vector<Vec3>* list : { &points, &more })
-  {
-    for (const Vec3& x : *list)
-    {
-      for (int c = 0; c < 3; ++c)
-      {
-        bounds[2 * c] = std::min(bounds[2 * c], x[c]);
-        bounds[2 * c + 1] = std::max(bounds[2 * c + 1], x[c]);
-      }
-    }
-  }
-  return bounds;
-}
 
 double GetExtent(const std::array<double, 6>& bounds)
 {
@@ -105,30 +85,9 @@ void SetSurface(vtkPolyData* output, const lacuna::FollowedSurface& followed)
     points->SetPoint(i, followed.Surface.Points[i].data());
     normals->SetTuple(i, followed.Normals[i].data());
   }
-  vtkNew<vtkTypeInt64Array> corners;
-  lacuna::Arrays::SetNumberOfTuples(
-    corners, 3 * static_cast<vtkIdType>(followed.Surface.Triangles.size()));
-  vtkIdType at = 0;
-  for (const auto& triangle : followed.Surface.Triangles)
-  {
-    for (const std::int32_t p : triangle)
-    {
-      corners->SetValue(at++, p);
-    }
-  }
   output->SetPoints(points);
-  lacuna::Arrays::SetTriangles(output, corners);
+  lacuna::Arrays::SetTriangles(output, followed.Surface.Triangles);
   output->GetPointData()->SetNormals(normals);
-}
-
-// Of places, so that points that repeat others do not count.
-double FindSpacing(lacuna::Execution& execution, std::vector<Vec3> points)
-{
-  std::sort(points.begin(), points.end(),
-    [](const Vec3& a, const Vec3& b)
-    { return std::lexicographical_compare(a.data(), a.data() + 3, b.data(), b.data() + 3); });
-  points.erase(std::unique(points.begin(), points.end()), points.end());
-  return lacuna::FindPointSpacing(execution, points);
 }
 
 // Distances of points from the surface, positive outside, to first order.
@@ -325,11 +284,11 @@ void vtkLacunaRBFSurface::Make(const lacuna::Ports& ports, lacuna::AlgorithmExec
   execution.SetStage(0, 0.05);
   lacuna::SurfacePoints collected = this->CollectPoints(ports, execution);
   lacuna::OrientedPoints& points = collected.Data;
-  const std::array<double, 6> own = GetBounds(points.Points, collected.Inside);
+  const std::array<double, 6> own = collected.GetBounds();
   this->CheckDistanceGrid(own);
   const std::unique_ptr<const lacuna::SurfacePrior> prior =
     this->FindPrior(ports, GetExtent(own), collected.Warnings);
-  const double spacing = FindSpacing(execution, points.Points);
+  const double spacing = collected.FindSpacing(execution);
   this->CheckNormals(execution, points, 0.5 * spacing);
 
   // the error of a volume takes as many fits again
