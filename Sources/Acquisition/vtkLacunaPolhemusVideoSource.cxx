@@ -80,7 +80,7 @@ void vtkLacunaPolhemusVideoSource::Start()
   }
   else
   {
-    this->Configure(false);
+    this->Configure();
   }
   if (!this->Now->Acquisition || !this->Now->Trouble.empty())
   {
@@ -245,7 +245,7 @@ void vtkLacunaPolhemusVideoSource::Announce(const lacuna::Ports& ports)
   lacuna::LiveSweep& now = *this->Now;
   if (now.Acquisition)
   {
-    this->Configure(true);
+    this->Configure();
   }
   const auto set = [&](int port, const lacuna::GrowingStack* stack)
   {

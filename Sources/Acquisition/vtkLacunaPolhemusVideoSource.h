@@ -194,6 +194,8 @@ protected:
   void Announce(const lacuna::Ports& ports) override;
   void Make(const lacuna::Ports& ports, lacuna::AlgorithmExecution& execution) override;
   void Describe(lacuna::Properties& properties) const override;
+  /// Configure does it: what is wrong is said once, not with each update, and what was taken stays in view.
+  void CheckProperties() const override {}
   std::string Parameters(int port) const override;
 
 private:
@@ -207,8 +209,7 @@ private:
   void ReplaceBrokenDevices();
   void Open();
   void Close();
-  void Configure(bool isUpdate);
-  void Refuse(const std::string& trouble);
+  void Configure();
   void ListRules(lacuna::Properties& properties) const;
   lacuna::AcquisitionRules GetRules() const;
   lacuna::AcquisitionRules MakeRules(bool keepsCalibration);

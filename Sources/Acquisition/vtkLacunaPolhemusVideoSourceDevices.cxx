@@ -8,7 +8,6 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
-#include <stdexcept>
 #include <string>
 
 namespace
@@ -147,22 +146,8 @@ void vtkLacunaPolhemusVideoSource::ReplaceBrokenDevices()
 }
 
 //------------------------------------------------------------------------------
-// Nothing changes, and the button does nothing, as Start with rules that are not wanted.
-void vtkLacunaPolhemusVideoSource::Refuse(const std::string& trouble)
-{
-  lacuna::LiveSweep& now = *this->Now;
-  now.Trouble = trouble;
-  if (this->ButtonStarts && now.Acquisition && !now.GetState().Capturing)
-  {
-    now.Rules.ButtonStarts = false;
-    now.Acquisition->SetRules(now.Rules);
-  }
-}
-
-//------------------------------------------------------------------------------
-// Makes the acquisition what the properties say; an error says why it cannot be, once. isUpdate: that a
-// property has a value that it may not have is said by the base.
-void vtkLacunaPolhemusVideoSource::Configure(bool isUpdate)
+// Makes the acquisition what the properties say; an error says why it cannot be, once.
+void vtkLacunaPolhemusVideoSource::Configure()
 {
   lacuna::LiveSweep& now = *this->Now;
   this->ReplaceBrokenDevices();
@@ -182,19 +167,7 @@ void vtkLacunaPolhemusVideoSource::Configure(bool isUpdate)
   now.Tried = tried;
   try
   {
-    this->CheckProperties();
-  }
-  catch (const std::invalid_argument& e)
-  {
-    this->Refuse(e.what());
-    if (!isUpdate)
-    {
-      vtkErrorMacro(<< lacuna::ToPrintable(now.Trouble));
-    }
-    return;
-  }
-  try
-  {
+    this->Described::CheckProperties();
     // One that is chosen together with other devices is theirs.
     const bool keepsCalibration = wait && now.Calibration.Calibrated;
     const lacuna::AcquisitionRules rules = this->MakeRules(keepsCalibration);
@@ -213,8 +186,13 @@ void vtkLacunaPolhemusVideoSource::Configure(bool isUpdate)
   }
   catch (const std::exception& e)
   {
-    this->Refuse(e.what());
+    now.Trouble = e.what();
     vtkErrorMacro(<< lacuna::ToPrintable(now.Trouble));
+    if (this->ButtonStarts && now.Acquisition && !now.GetState().Capturing)
+    {
+      now.Rules.ButtonStarts = false; // as Start, which does nothing with rules that are not wanted
+      now.Acquisition->SetRules(now.Rules);
+    }
   }
 }
 
@@ -277,7 +255,7 @@ void vtkLacunaPolhemusVideoSource::Apply(lacuna::AcquisitionRules rules, bool ke
 void vtkLacunaPolhemusVideoSource::Connect()
 {
   this->Now->Tried.clear(); // asked for: tries again what failed
-  this->Configure(false);
+  this->Configure();
   this->Modified();
 }
 

@@ -169,7 +169,7 @@ protected:
   virtual void Describe(Properties& properties) const;
 
   /// Throws std::invalid_argument when a property has a value that it may not have.
-  void CheckProperties() const;
+  virtual void CheckProperties() const;
 
   /// A line each: "Name: value (what it may be)".
   template <class Indent>

@@ -441,15 +441,17 @@ TEST(RadialSolver, SaysWhatItCannotDo)
   ASSERT_NE(at, std::string::npos) << below;
   EXPECT_LT(std::stod(below.substr(at + reached.size())), 1e-11) << below; // values of about 20
   expect(fit(Options(RadialKernel::ThinPlate, RadialSolver::Fast, 0)), "accuracy above 0");
-  expect(fit(Options(RadialKernel::ThinPlate, RadialSolver::Auto, -1)), "accuracy must be");
-  expect(fit(Options(RadialKernel::ThinPlate, RadialSolver::Auto, 2)), "accuracy must be");
+  expect(fit(Options(RadialKernel::ThinPlate, RadialSolver::Auto, -1)),
+    "Accuracy is -1; it must be from 0 to 1");
+  expect(fit(Options(RadialKernel::ThinPlate, RadialSolver::Auto, 2)),
+    "Accuracy is 2; it must be from 0 to 1");
   RadialBasisOptions wide = Options(RadialKernel::Gaussian, RadialSolver::Fast, 1e-6);
   wide.Shape = 500;
   expect(fit(wide), "lower KernelLength");
   wide.Shape = -1;
-  expect(fit(wide), "length of the kernel");
+  expect(fit(wide), "KernelLength is ");
   wide.Shape = std::numeric_limits<double>::quiet_NaN();
-  expect(fit(wide), "length of the kernel");
+  expect(fit(wide), "KernelLength is ");
   const Points<2> line = { { 0, 0 }, { 1, 0 }, { 2, 0 }, { 0, 1 }, { 0, 2 }, { 0, 3 } };
   expect(ErrorOf(
            [&]
