@@ -97,7 +97,7 @@ const Case Errors[] = {
   { "cut-off of a kernel that has none",
     [](TestMap&, vtkLacunaRBFHoleFiller* filler)
     {
-      filler->SetKernel(vtkLacunaRBFHoleFiller::Gaussian);
+      filler->SetKernel(lacuna::RadialKernel::Gaussian);
       filler->SetCutoffWavelength(10);
     },
     "power of distance" },

@@ -176,7 +176,7 @@ void CheckCenters(bool flat)
   vtkSmartPointer<vtkPolyData> points = MakePoints(6000, flat);
   vtkNew<vtkLacunaRBFInterpolator> filter;
   filter->SetInputData(points);
-  filter->SetKernel(flat ? vtkLacunaRBFInterpolator::ThinPlate : vtkLacunaRBFInterpolator::Linear);
+  filter->SetKernel(flat ? lacuna::RadialKernel::ThinPlate : lacuna::RadialKernel::Linear);
   filter->SetOutputSpacing(4, 4, 4);
   filter->Update();
   LACUNA_CHECK(Field(filter->GetOutput(), "NodeCount") == 6000);
@@ -280,7 +280,7 @@ const Case Errors[] = {
   { "length",
     [](vtkPolyData*, vtkLacunaRBFInterpolator* f)
     {
-      f->SetKernel(vtkLacunaRBFInterpolator::Gaussian);
+      f->SetKernel(lacuna::RadialKernel::Gaussian);
       f->SetKernelLength(-3);
     },
     "KernelLength is -3; it must be 0 or more" },
