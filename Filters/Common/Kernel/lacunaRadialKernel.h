@@ -12,14 +12,15 @@ namespace lacuna
 /// with a length in units of KernelLength.
 enum class RadialKernel
 {
-  ThinPlate = 0,   ///< r^2 log r: bends least in a plane
-  Linear = 1,      ///< r: bends least in space; in a plane tents, which may crease at nodes
-  Triharmonic = 2, ///< r^4 log r with a quadratic: smoothest, swings most
-  Cubic = 3,       ///< r^3, the triharmonic of space: carries the curvature of a rim into a hole
-  Gaussian = 4,    ///< exp(-r^2): falls back to a plane away from nodes
-  Multiquadric = 5 ///< sqrt(1 + r^2)
+  ThinPlate = 0,    ///< r^2 log r: bends least in a plane
+  Linear = 1,       ///< r: bends least in space; in a plane tents, which may crease at nodes
+  Triharmonic = 2,  ///< r^4 log r with a quadratic: smoothest, swings most
+  Cubic = 3,        ///< r^3, the triharmonic of space: carries the curvature of a rim into a hole
+  Gaussian = 4,     ///< exp(-r^2): falls back to a plane away from nodes
+  Multiquadric = 5, ///< sqrt(1 + r^2)
+  Wendland = 6      ///< (1 - r)^4 (4 r + 1) up to r = 1, 0 beyond: only near nodes count
 };
-inline constexpr std::array<const char*, 6> RadialKernelNames{ "ThinPlate", "Linear", "Triharmonic",
-  "Cubic", "Gaussian", "Multiquadric" };
+inline constexpr std::array<const char*, 7> RadialKernelNames{ "ThinPlate", "Linear", "Triharmonic",
+  "Cubic", "Gaussian", "Multiquadric", "Wendland" };
 }
 #endif

@@ -269,10 +269,9 @@ const Case Errors[] = {
       }
     },
     "one line along an axis" },
-  { "kernel", [](vtkPolyData*, vtkLacunaRBFInterpolator* f) { f->SetKernel(6); },
-    "Kernel is 6; it must be 0 (ThinPlate), 1 (Linear), 2 (Triharmonic), 3 (Cubic), 4 (Gaussian) "
-    "or "
-    "5 (Multiquadric)" },
+  { "kernel", [](vtkPolyData*, vtkLacunaRBFInterpolator* f) { f->SetKernel(7); },
+    "Kernel is 7; it must be 0 (ThinPlate), 1 (Linear), 2 (Triharmonic), 3 (Cubic), 4 (Gaussian), "
+    "5 (Multiquadric) or 6 (Wendland)" },
   { "solver", [](vtkPolyData*, vtkLacunaRBFInterpolator* f) { f->SetSolver(-1); },
     "Solver is -1; it must be 0 (Auto), 1 (Direct) or 2 (Fast)" },
   { "accuracy", [](vtkPolyData*, vtkLacunaRBFInterpolator* f) { f->SetAccuracy(1.5); },
