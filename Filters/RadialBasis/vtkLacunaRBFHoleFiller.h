@@ -44,6 +44,7 @@
 #ifndef vtkLacunaRBFHoleFiller_h
 #define vtkLacunaRBFHoleFiller_h
 
+#include "lacunaRadialKernel.h"
 #include "vtkImageAlgorithm.h"
 #include "vtkLacunaAlgorithm.h"
 #include "vtkLacunaFiltersRadialBasisModule.h" // for export macro
@@ -90,15 +91,6 @@ public:
   void RemovePriorSurface() { this->RemoveAllInputConnections(PriorSurfacePort); }
   ///@}
 
-  enum KernelType
-  {
-    ThinPlate = 0,   ///< r^2 log r: the surface through the nodes that bends least
-    Linear = 1,      ///< r: tent-like, may crease at nodes
-    Triharmonic = 2, ///< r^4 log r with a quadratic: smoothest, swings most
-    Cubic = 3,       ///< r^3: also carries the curvature of the rim into the hole
-    Gaussian = 4,    ///< exp(-(r/KernelLength)^2): falls back to a plane away from nodes
-    Multiquadric = 5 ///< sqrt(1 + (r/KernelLength)^2)
-  };
   enum SolverType
   {
     Auto = 0,
@@ -112,8 +104,10 @@ public:
   };
 
   ///@{
-  /** Radial function. Default ThinPlate. */
+  /** Radial function, the number of a lacuna::RadialKernel; the filter when printed says which there are. Default
+   * ThinPlate. */
   vtkSetMacro(Kernel, int);
+  void SetKernel(lacuna::RadialKernel kernel) { this->SetKernel(static_cast<int>(kernel)); }
   vtkGetMacro(Kernel, int);
   ///@}
 
@@ -275,7 +269,7 @@ private:
   void MarkDefect(lacuna::AlgorithmExecution& execution, vtkImageData* map,
     const lacuna::Ports& ports, lacuna::MarkedMap& marked, lacuna::ParameterText& where);
 
-  int Kernel = ThinPlate;
+  int Kernel = static_cast<int>(lacuna::RadialKernel::ThinPlate);
   double KernelLength = 0;
   int Trend = NoTrend;
   vtkSmartPointer<vtkImplicitFunction> DefectRegion;

@@ -33,6 +33,7 @@
 #ifndef vtkLacunaRBFInterpolator_h
 #define vtkLacunaRBFInterpolator_h
 
+#include "lacunaRadialKernel.h"
 #include "vtkImageAlgorithm.h"
 #include "vtkLacunaAlgorithm.h"
 #include "vtkLacunaFiltersRadialBasisModule.h" // for export macro
@@ -54,15 +55,6 @@ public:
   static vtkLacunaRBFInterpolator* New();
   vtkTypeMacro(vtkLacunaRBFInterpolator, vtkImageAlgorithm);
 
-  enum KernelType
-  {
-    ThinPlate = 0,   ///< r^2 log r: bends least in two dimensions
-    Linear = 1,      ///< r, the biharmonic of three dimensions: does not swing
-    Triharmonic = 2, ///< r^4 log r: very smooth, swings more
-    Cubic = 3,       ///< r^3, the triharmonic of three dimensions
-    Gaussian = 4,    ///< exp(-(r/KernelLength)^2)
-    Multiquadric = 5 ///< sqrt(1 + (r/KernelLength)^2)
-  };
   enum SolverType
   {
     Auto = 0,   ///< Direct up to 1500 points, else Fast
@@ -77,8 +69,10 @@ public:
   ///@}
 
   ///@{
-  /** Radial function. Default ThinPlate. */
+  /** Radial function, the number of a lacuna::RadialKernel; the filter when printed says which there are. Default
+   * ThinPlate. */
   vtkSetMacro(Kernel, int);
+  void SetKernel(lacuna::RadialKernel kernel) { this->SetKernel(static_cast<int>(kernel)); }
   vtkGetMacro(Kernel, int);
   ///@}
 
@@ -165,7 +159,7 @@ private:
 
   std::string ScalarArray;
   std::string ErrorArray;
-  int Kernel = ThinPlate;
+  int Kernel = static_cast<int>(lacuna::RadialKernel::ThinPlate);
   double KernelLength = 0;
   double Smoothing = 0;
   double Accuracy = 1e-4;

@@ -48,10 +48,10 @@ assert (x[:, 2] == 7).all()
 values = vtk_to_numpy(image.GetPointData().GetArray("Height"))
 assert np.abs(values - np.sin(x[:, 0] / 20) - 0.02 * x[:, 1]).max() < 0.05
 assert image.GetFieldData().GetArray("NodeCount").GetValue(0) == 900
-for kernel in ("Linear", "Triharmonic", "Cubic", "Gaussian", "Multiquadric"):
+for kernel in ("Linear", "Triharmonic", "Cubic", "Gaussian", "Multiquadric", "Wendland"):
     filter.Kernel = kernel
     values = vtk_to_numpy(fetch(filter).GetPointData().GetArray("Height"))
-    # at the border a Gaussian falls back to its plane
+    # at the border a Gaussian and a Wendland fall back to their plane
     assert np.median(np.abs(values - np.sin(x[:, 0] / 20) - 0.02 * x[:, 1])) < 0.02, kernel
 filter.Kernel = "ThinPlate"
 filter.Solver = "Fast"

@@ -21,12 +21,11 @@ void CheckOptions(const HoleFillOptions& options)
     throw std::invalid_argument("Smoothing and CutoffWavelength are both above 0, and each "
                                 "determines the other; set one of them to 0");
   }
-  if (options.CutoffWavelength > 0 &&
-    (options.Kernel == RadialKernel::Gaussian || options.Kernel == RadialKernel::Multiquadric))
+  if (options.CutoffWavelength > 0 && IsRadialShaped(options.Kernel))
   {
     throw std::invalid_argument("CutoffWavelength needs a kernel that is a power of distance: "
-                                "ThinPlate, Linear, Cubic or Triharmonic; with Gaussian and "
-                                "Multiquadric set it to 0 and use Smoothing");
+                                "ThinPlate, Linear, Cubic or Triharmonic; with kernels that have "
+                                "a KernelLength set it to 0 and use Smoothing");
   }
   if (options.Accuracy == 1)
   {

@@ -236,6 +236,30 @@ struct MultiquadricKernel
   }
 };
 
+// (1 - r)^4 (4 r + 1), 0 from r = 1 on: twice continuously differentiable, positive definite up to 3-D (Wendland 1995).
+struct WendlandKernel
+{
+  static constexpr int Power = 0;
+  static constexpr int Degree = 1;
+  static constexpr bool Shaped = true;
+  static constexpr double Energy = 1;
+
+  template <int Width, class Real = typename Packs<Width>::Real>
+  static LACUNA_PACK_INLINE Real Phi(const Real& r2)
+  {
+    const Real r = PackSqrt<Width>(r2);
+    const Real rest = r < 1.0 ? 1.0 - r : Real{};
+    return rest * rest * (rest * rest) * (4.0 * r + 1.0);
+  }
+  template <int Width, class Real = typename Packs<Width>::Real>
+  static LACUNA_PACK_INLINE Real Slope(const Real& r2)
+  {
+    const Real r = PackSqrt<Width>(r2);
+    const Real rest = r < 1.0 ? 1.0 - r : Real{};
+    return -20.0 * (rest * rest * rest);
+  }
+};
+
 //------------------------------------------------------------------------------
 // The bodies below are inlined into wrappers that are compiled for one instruction set each.
 template <int Width>
@@ -381,6 +405,8 @@ auto Visit(RadialKernel kernel, const Visitor& visit)
       return visit(GaussianKernel());
     case RadialKernel::Multiquadric:
       return visit(MultiquadricKernel());
+    case RadialKernel::Wendland:
+      return visit(WendlandKernel());
   }
   throw std::invalid_argument("unknown radial kernel");
 }

@@ -7,7 +7,8 @@
 #ifndef lacunaRadialSum_h
 #define lacunaRadialSum_h
 
-#include <array>
+#include "lacunaRadialKernel.h"
+
 #include <cstddef>
 #include <string>
 
@@ -19,19 +20,6 @@ struct RadialWords
   std::string Accuracy = "Accuracy";
   std::string Smoothing = "Smoothing";
 };
-
-/// The radial functions; the numbers are those of the filters' Kernel property.
-enum class RadialKernel
-{
-  ThinPlate = 0,   ///< r^2 log r
-  Linear = 1,      ///< r
-  Triharmonic = 2, ///< r^4 log r
-  Cubic = 3,       ///< r^3
-  Gaussian = 4,    ///< exp(-r^2), r in units of its length
-  Multiquadric = 5 ///< sqrt(1 + r^2), r in units of its length
-};
-inline constexpr std::array<const char*, 6> RadialKernelNames{ "ThinPlate", "Linear", "Triharmonic",
-  "Cubic", "Gaussian", "Multiquadric" };
 
 enum class InstructionSet
 {

@@ -18,7 +18,7 @@ namespace
 using lacuna::RadialKernel;
 constexpr RadialKernel Kernels[] = { RadialKernel::ThinPlate, RadialKernel::Linear,
   RadialKernel::Triharmonic, RadialKernel::Cubic, RadialKernel::Gaussian,
-  RadialKernel::Multiquadric };
+  RadialKernel::Multiquadric, RadialKernel::Wendland };
 
 template <int Dimension>
 using Points = std::vector<std::array<double, Dimension>>;
@@ -208,7 +208,8 @@ TEST(FastRadialSum, KeepsItsBoundIn3D)
 TEST(FastRadialSum, KeepsItsBoundForNarrowKernels)
 {
   // The shaped kernels over many times their length: far away nothing is left of a Gaussian.
-  for (const RadialKernel kernel : { RadialKernel::Gaussian, RadialKernel::Multiquadric })
+  for (const RadialKernel kernel :
+    { RadialKernel::Gaussian, RadialKernel::Multiquadric, RadialKernel::Wendland })
   {
     CheckBound<2>(kernel, Shape::Uniform, 3000, { 1e-2, 1e-5, 1e-8 }, 30);
     CheckBound<3>(kernel, Shape::Uniform, 4000, { 1e-2, 1e-4 }, 8);

@@ -23,7 +23,7 @@ using lacuna::RadialKernel;
 using lacuna::RadialSolver;
 constexpr RadialKernel Kernels[] = { RadialKernel::ThinPlate, RadialKernel::Linear,
   RadialKernel::Triharmonic, RadialKernel::Cubic, RadialKernel::Gaussian,
-  RadialKernel::Multiquadric };
+  RadialKernel::Multiquadric, RadialKernel::Wendland };
 
 template <int Dimension>
 using Points = std::vector<std::array<double, Dimension>>;

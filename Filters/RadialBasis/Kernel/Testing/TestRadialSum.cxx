@@ -14,7 +14,8 @@ namespace
 constexpr std::size_t Block = lacuna::RadialBlock;
 constexpr lacuna::RadialKernel Kernels[] = { lacuna::RadialKernel::ThinPlate,
   lacuna::RadialKernel::Linear, lacuna::RadialKernel::Triharmonic, lacuna::RadialKernel::Cubic,
-  lacuna::RadialKernel::Gaussian, lacuna::RadialKernel::Multiquadric };
+  lacuna::RadialKernel::Gaussian, lacuna::RadialKernel::Multiquadric,
+  lacuna::RadialKernel::Wendland };
 
 std::vector<lacuna::InstructionSet> AvailableSets()
 {
@@ -40,6 +41,8 @@ double Phi(lacuna::RadialKernel kernel, double r)
       return r * r * r;
     case lacuna::RadialKernel::Gaussian:
       return std::exp(-r * r);
+    case lacuna::RadialKernel::Wendland:
+      return r < 1 ? std::pow(1 - r, 4) * (4 * r + 1) : 0;
     default:
       return -std::sqrt(1 + r * r);
   }
@@ -59,6 +62,8 @@ double PhiPrime(lacuna::RadialKernel kernel, double r)
       return 3 * r * r;
     case lacuna::RadialKernel::Gaussian:
       return -2 * r * std::exp(-r * r);
+    case lacuna::RadialKernel::Wendland:
+      return r < 1 ? -20 * r * std::pow(1 - r, 3) : 0;
     default:
       return -r / std::sqrt(1 + r * r);
   }

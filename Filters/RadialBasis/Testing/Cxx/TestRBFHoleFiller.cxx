@@ -344,7 +344,7 @@ void TestKernels()
     filler->SetKernel(kernel);
     filler->Update();
     LACUNA_CHECK((filler->GetOutput()->GetFieldData()->GetArray("BendingEnergy") != nullptr) ==
-      (kernel == vtkLacunaRBFHoleFiller::ThinPlate));
+      (kernel == static_cast<int>(lacuna::RadialKernel::ThinPlate)));
     for (vtkIdType i = 0; i < map.Image->GetNumberOfPoints(); ++i)
     {
       const double deviation = Get(filler->GetOutput(), "Deviation", i);

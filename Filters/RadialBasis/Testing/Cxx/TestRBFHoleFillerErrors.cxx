@@ -69,10 +69,9 @@ const Case Errors[] = {
   { "array of vectors",
     [](TestMap&, vtkLacunaRBFHoleFiller* filler) { filler->SetSupportArray("Normals"); },
     "SupportArray" },
-  { "kernel", [](TestMap&, vtkLacunaRBFHoleFiller* filler) { filler->SetKernel(6); },
-    "Kernel is 6; it must be 0 (ThinPlate), 1 (Linear), 2 (Triharmonic), 3 (Cubic), 4 (Gaussian) "
-    "or "
-    "5 (Multiquadric)" },
+  { "kernel", [](TestMap&, vtkLacunaRBFHoleFiller* filler) { filler->SetKernel(7); },
+    "Kernel is 7; it must be 0 (ThinPlate), 1 (Linear), 2 (Triharmonic), 3 (Cubic), 4 (Gaussian), "
+    "5 (Multiquadric) or 6 (Wendland)" },
   { "solver", [](TestMap&, vtkLacunaRBFHoleFiller* filler) { filler->SetSolver(-1); },
     "Solver is -1; it must be 0 (Auto), 1 (Direct) or 2 (Fast)" },
   { "trend", [](TestMap&, vtkLacunaRBFHoleFiller* filler) { filler->SetTrend(2); },
@@ -97,7 +96,7 @@ const Case Errors[] = {
   { "cut-off of a kernel that has none",
     [](TestMap&, vtkLacunaRBFHoleFiller* filler)
     {
-      filler->SetKernel(vtkLacunaRBFHoleFiller::Gaussian);
+      filler->SetKernel(lacuna::RadialKernel::Gaussian);
       filler->SetCutoffWavelength(10);
     },
     "power of distance" },

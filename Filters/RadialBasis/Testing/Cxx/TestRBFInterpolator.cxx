@@ -176,7 +176,7 @@ void CheckCenters(bool flat)
   vtkSmartPointer<vtkPolyData> points = MakePoints(6000, flat);
   vtkNew<vtkLacunaRBFInterpolator> filter;
   filter->SetInputData(points);
-  filter->SetKernel(flat ? vtkLacunaRBFInterpolator::ThinPlate : vtkLacunaRBFInterpolator::Linear);
+  filter->SetKernel(flat ? lacuna::RadialKernel::ThinPlate : lacuna::RadialKernel::Linear);
   filter->SetOutputSpacing(4, 4, 4);
   filter->Update();
   LACUNA_CHECK(Field(filter->GetOutput(), "NodeCount") == 6000);
@@ -269,10 +269,9 @@ const Case Errors[] = {
       }
     },
     "one line along an axis" },
-  { "kernel", [](vtkPolyData*, vtkLacunaRBFInterpolator* f) { f->SetKernel(6); },
-    "Kernel is 6; it must be 0 (ThinPlate), 1 (Linear), 2 (Triharmonic), 3 (Cubic), 4 (Gaussian) "
-    "or "
-    "5 (Multiquadric)" },
+  { "kernel", [](vtkPolyData*, vtkLacunaRBFInterpolator* f) { f->SetKernel(7); },
+    "Kernel is 7; it must be 0 (ThinPlate), 1 (Linear), 2 (Triharmonic), 3 (Cubic), 4 (Gaussian), "
+    "5 (Multiquadric) or 6 (Wendland)" },
   { "solver", [](vtkPolyData*, vtkLacunaRBFInterpolator* f) { f->SetSolver(-1); },
     "Solver is -1; it must be 0 (Auto), 1 (Direct) or 2 (Fast)" },
   { "accuracy", [](vtkPolyData*, vtkLacunaRBFInterpolator* f) { f->SetAccuracy(1.5); },
@@ -280,7 +279,7 @@ const Case Errors[] = {
   { "length",
     [](vtkPolyData*, vtkLacunaRBFInterpolator* f)
     {
-      f->SetKernel(vtkLacunaRBFInterpolator::Gaussian);
+      f->SetKernel(lacuna::RadialKernel::Gaussian);
       f->SetKernelLength(-3);
     },
     "KernelLength is -3; it must be 0 or more" },

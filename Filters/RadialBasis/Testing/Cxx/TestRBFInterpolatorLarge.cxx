@@ -85,7 +85,7 @@ void Check(vtkIdType count, bool flat, double accuracy, double noise)
   vtkNew<vtkLacunaRBFInterpolator> filter;
   const auto messages = lacunaCheck::Watch(filter);
   filter->SetInputData(scatter.Data);
-  filter->SetKernel(flat ? vtkLacunaRBFInterpolator::ThinPlate : vtkLacunaRBFInterpolator::Linear);
+  filter->SetKernel(flat ? lacuna::RadialKernel::ThinPlate : lacuna::RadialKernel::Linear);
   filter->SetAccuracy(accuracy);
   filter->SetOutputSpacing(1, 1, 1);
   filter->Update();
