@@ -63,7 +63,8 @@ public:
     AdaptiveMedian, ///< weighted median (Loupas 1989; Evans & Nixon 1993)
     Mean,
     Gaussian,
-    LaplacianOfGaussian
+    LaplacianOfGaussian,
+    TopHat ///< the sample minus its opening: bright details alone
   };
   ///@{
   /// What to do. Default: Median.

@@ -15,7 +15,7 @@ from lacuna import speckle
 from lacuna.errors import PipelineError, raising
 
 OPERATIONS = ["Median", "Rank", "Minimum", "Maximum", "Opening", "Closing", "OpenClose", "CloseOpen",
-              "Mode", "AdaptiveMedian", "Mean", "Gaussian", "LaplacianOfGaussian"]
+              "Mode", "AdaptiveMedian", "Mean", "Gaussian", "LaplacianOfGaussian", "TopHat"]
 
 
 def check_panels():

@@ -18,6 +18,17 @@ except ImportError:
 TYPES = (np.int8, np.uint8, np.int16, np.uint16, np.int32, np.uint32, np.int64, np.uint64, np.float32, np.float64)
 SIZES = ((1, 1, 1), (3, 3, 1), (5, 5, 1), (2, 2, 1), (3, 3, 3), (4, 3, 2), (1, 6, 5), (13, 15, 9))  # x, y, z
 SHAPE = (6, 9, 11)  # z, y, x
+
+
+def top_hat(values, **window):
+    """ndimage.white_tophat wraps round where integers end."""
+    opening = ndimage.grey_opening(values, **window)
+    if values.dtype.kind == "f":
+        return values - opening
+    difference = values.astype(object) - opening.astype(object)
+    return np.minimum(difference, np.iinfo(values.dtype).max).astype(values.dtype)
+
+
 EXACT = {
     "Median": ndimage.median_filter,
     "Rank": lambda v, **window: ndimage.percentile_filter(v, 30, **window),
@@ -27,9 +38,10 @@ EXACT = {
     "Closing": ndimage.grey_closing,
     "OpenClose": lambda v, **window: ndimage.grey_closing(ndimage.grey_opening(v, **window), **window),
     "CloseOpen": lambda v, **window: ndimage.grey_opening(ndimage.grey_closing(v, **window), **window),
+    "TopHat": top_hat,
 }
 OPERATIONS = ("Median", "Rank", "Minimum", "Maximum", "Opening", "Closing", "OpenClose", "CloseOpen", "Mode",
-              "AdaptiveMedian", "Mean", "Gaussian", "LaplacianOfGaussian")
+              "AdaptiveMedian", "Mean", "Gaussian", "LaplacianOfGaussian", "TopHat")
 
 
 def lacuna_filter(values, operation, size, ellipsoid=False, deviation=1.0, spacing=(1, 1, 1)):

@@ -11,9 +11,11 @@
 #include "lacunaSeparable.h"
 
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <stdexcept>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 namespace lacuna
@@ -430,6 +432,7 @@ std::vector<MorphologyStep> StepsOf(SpeckleOperation operation)
     case SpeckleOperation::Maximum:
       return { { Extreme::Greatest, false } };
     case SpeckleOperation::Opening:
+    case SpeckleOperation::TopHat:
       return { Erode, Dilate };
     case SpeckleOperation::Closing:
       return { Dilate, Erode };
@@ -505,6 +508,49 @@ void FilterMorphology(const ImageView<const T>& input, const ImageView<T>& outpu
 }
 }
 
+namespace
+{
+// high - low, where high >= low; the largest number where an integer type ends before.
+template <class T>
+T Above(T high, T low)
+{
+  if constexpr (std::is_floating_point_v<T>)
+  {
+    return high == low ? T(0) : high - low; // infinities are no higher than themselves
+  }
+  else
+  {
+    using Count = std::make_unsigned_t<T>;
+    const auto difference = static_cast<Count>(static_cast<Count>(high) - static_cast<Count>(low));
+    constexpr T most = std::numeric_limits<T>::max();
+    return difference > static_cast<Count>(most) ? most : static_cast<T>(difference);
+  }
+}
+
+// opening: output before, input minus that after.
+template <class T>
+void SubtractOpening(
+  const ImageView<const T>& input, const ImageView<T>& opening, Execution& execution)
+{
+  const Extent& box = opening.Box;
+  execution.For(SizeOf(box, 2), 1,
+    [&](std::int64_t begin, std::int64_t end)
+    {
+      for (int z = box[4] + static_cast<int>(begin); z < box[4] + static_cast<int>(end); ++z)
+      {
+        for (int y = box[2]; y <= box[3]; ++y)
+        {
+          for (int x = box[0]; x <= box[1]; ++x)
+          {
+            T& sample = *opening.At(x, y, z);
+            sample = Above(*input.At(x, y, z), sample);
+          }
+        }
+      }
+    });
+}
+}
+
 void SpeckleParameters::Describe(Properties& properties) const
 {
   properties.Add("Operation", static_cast<int>(this->Operation), SpeckleOperationNames)
@@ -554,7 +600,12 @@ void FilterSpeckle(const ImageView<const T>& input, const ImageView<T>& output,
   const std::vector<MorphologyStep> steps = StepsOf(parameters.Operation);
   if (!steps.empty())
   {
-    return FilterMorphology(input, output, window, steps, parameters.Set, execution);
+    FilterMorphology(input, output, window, steps, parameters.Set, execution);
+    if (parameters.Operation == SpeckleOperation::TopHat)
+    {
+      SubtractOpening(input, output, execution);
+    }
+    return;
   }
   RankParameters rank;
   rank.Set = parameters.Set;

@@ -67,11 +67,12 @@ enum class SpeckleOperation
   AdaptiveMedian,
   Mean,
   Gaussian,
-  LaplacianOfGaussian
+  LaplacianOfGaussian,
+  TopHat ///< the sample minus its opening; what an integer type cannot hold becomes its maximum
 };
-inline constexpr std::array<const char*, 13> SpeckleOperationNames{ "Median", "Rank", "Minimum",
+inline constexpr std::array<const char*, 14> SpeckleOperationNames{ "Median", "Rank", "Minimum",
   "Maximum", "Opening", "Closing", "OpenClose", "CloseOpen", "Mode", "AdaptiveMedian", "Mean",
-  "Gaussian", "LaplacianOfGaussian" };
+  "Gaussian", "LaplacianOfGaussian", "TopHat" };
 
 struct SpeckleParameters
 {

@@ -17,7 +17,7 @@ const std::vector<SpeckleOperation> Operations{ SpeckleOperation::Median, Speckl
   SpeckleOperation::Minimum, SpeckleOperation::Maximum, SpeckleOperation::Opening,
   SpeckleOperation::Closing, SpeckleOperation::OpenClose, SpeckleOperation::CloseOpen,
   SpeckleOperation::Mode, SpeckleOperation::AdaptiveMedian, SpeckleOperation::Mean,
-  SpeckleOperation::Gaussian };
+  SpeckleOperation::Gaussian, SpeckleOperation::TopHat };
 
 template <class T>
 Image<T> Filtered(const Image<T>& image, const SpeckleParameters& parameters, int threads = 2)
@@ -194,6 +194,21 @@ TEST(SpeckleFilter, OpeningRemovesWhatIsSmallerThanTheWindowAndShiftsNothing)
     }
   }
   EXPECT_EQ(Filtered(image, Make(SpeckleOperation::Opening, { 4, 4, 1 })).Samples, square.Samples);
+}
+
+TEST(SpeckleFilter, TopHatKeepsNaNAndMakesNone)
+{
+  Image<float> image(9, 1, 1);
+  image.Samples = { 1, 1, 5, std::numeric_limits<float>::quiet_NaN(), 1, 1,
+    std::numeric_limits<float>::infinity(), std::numeric_limits<float>::infinity(),
+    std::numeric_limits<float>::infinity() };
+  const auto hat = Filtered(image, Make(SpeckleOperation::TopHat, { 3, 1, 1 }));
+  EXPECT_EQ(hat.Samples[2], 4);
+  EXPECT_TRUE(std::isnan(hat.Samples[3]));
+  for (const std::size_t i : { 0, 1, 4, 5, 7, 8 })
+  {
+    EXPECT_EQ(hat.Samples[i], 0) << i;
+  }
 }
 
 TEST(SpeckleFilter, TwoDimensionalWindowsKeepSlicesApart)
@@ -381,7 +396,31 @@ TYPED_TEST(SpeckleTypeTest, ConstantsStayConstant)
         }
         continue;
       }
+      if (operation == SpeckleOperation::TopHat)
+      {
+        EXPECT_EQ(result.Samples, std::vector<TypeParam>(image.Samples.size())) << double(value);
+        continue;
+      }
       EXPECT_EQ(result.Samples, image.Samples) << int(operation) << " " << double(value);
+    }
+  }
+}
+
+// White top-hat; int8 cannot hold 100 - (-100).
+TYPED_TEST(SpeckleTypeTest, TopHatIsWhatOpeningTakes)
+{
+  const Image<TypeParam> image = oracle::Random<TypeParam>(40, 31, 5, 3);
+  for (const std::array<int, 3>& size : { std::array<int, 3>{ 3, 3, 1 }, { 4, 2, 2 } })
+  {
+    const auto opened = Filtered(image, Make(SpeckleOperation::Opening, size));
+    const auto hat = Filtered(image, Make(SpeckleOperation::TopHat, size));
+    for (std::size_t i = 0; i < image.Samples.size(); ++i)
+    {
+      // exact: long double has the digits of all integer types; floating types round once
+      using Exact = std::conditional_t<std::is_integral_v<TypeParam>, long double, TypeParam>;
+      const Exact difference = Exact(image.Samples[i]) - Exact(opened.Samples[i]);
+      const Exact most = Exact(std::numeric_limits<TypeParam>::max());
+      ASSERT_EQ(hat.Samples[i], static_cast<TypeParam>(std::min(difference, most))) << i;
     }
   }
 }

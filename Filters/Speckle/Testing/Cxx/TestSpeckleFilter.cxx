@@ -472,10 +472,10 @@ void TestErrors()
                        f->SetAdaptiveStrength(-1);
                      }),
     "AdaptiveStrength is -1; it must be 0 or more"));
-  LACUNA_CHECK(has(errors(image, [](auto* f) { f->SetOperation(13); }),
-    "Operation is 13; it must be 0 (Median), 1 (Rank), 2 (Minimum), 3 (Maximum), 4 (Opening), "
+  LACUNA_CHECK(has(errors(image, [](auto* f) { f->SetOperation(14); }),
+    "Operation is 14; it must be 0 (Median), 1 (Rank), 2 (Minimum), 3 (Maximum), 4 (Opening), "
     "5 (Closing), 6 (OpenClose), 7 (CloseOpen), 8 (Mode), 9 (AdaptiveMedian), 10 (Mean), "
-    "11 (Gaussian) or 12 (LaplacianOfGaussian)"));
+    "11 (Gaussian), 12 (LaplacianOfGaussian) or 13 (TopHat)"));
   LACUNA_CHECK(has(errors(image, [](auto* f) { f->SetKernelShape(-1); }),
     "KernelShape is -1; it must be 0 (Box) or 1 (Ellipsoid)"));
   vtkNew<vtkImageData> bare;
