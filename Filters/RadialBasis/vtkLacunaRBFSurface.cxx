@@ -5,6 +5,7 @@
 #include "lacunaArrays.h"
 #include "lacunaBlendedSpline.h"
 #include "lacunaFieldData.h"
+#include "lacunaFunctionText.h"
 #include "lacunaMemory.h"
 #include "lacunaOutlines.h"
 #include "lacunaPointNormals.h"
@@ -437,6 +438,18 @@ lacuna::SurfaceFollowerOptions vtkLacunaRBFSurface::GetFollowerOptions(
 }
 
 //------------------------------------------------------------------------------
+std::vector<vtkDataObject*> vtkLacunaRBFSurface::GetOrigins(const lacuna::Ports& ports) const
+{
+  std::vector<vtkDataObject*> origins = this->lacuna::Algorithm::GetOrigins(ports);
+  if (this->PriorFunction) // takes the place of the surface
+  {
+    auto* surface = ports.GetInput<vtkDataObject>(1);
+    origins.erase(std::remove(origins.begin(), origins.end(), surface), origins.end());
+  }
+  return origins;
+}
+
+//------------------------------------------------------------------------------
 void vtkLacunaRBFSurface::Describe(lacuna::Properties& properties) const
 {
   constexpr lacuna::ValueRange size = lacuna::ValueRange::Above(0, "mm");
@@ -449,7 +462,7 @@ void vtkLacunaRBFSurface::Describe(lacuna::Properties& properties) const
     .Add("OutputBounds", this->OutputBounds, lacuna::ValueRange::Any("mm"))
     .Add("CapBoundary", this->CapBoundary)
     .Add("SideArray", this->SideArray)
-    .Add("PriorFunction", this->PriorFunction ? this->PriorFunction->GetClassName() : "None")
+    .Add("PriorFunction", lacuna::FunctionText::Describe(this->PriorFunction))
     .Add("DistanceSpacing", this->DistanceSpacing, size.OrZero("no image"));
 }
 

@@ -188,6 +188,7 @@ protected:
   void Announce(const lacuna::Ports& ports) override;
   void Make(const lacuna::Ports& ports, lacuna::AlgorithmExecution& execution) override;
   void Describe(lacuna::Properties& properties) const override;
+  std::vector<vtkDataObject*> GetOrigins(const lacuna::Ports& ports) const override;
 
 private:
   vtkLacunaRBFSurface(const vtkLacunaRBFSurface&) = delete;

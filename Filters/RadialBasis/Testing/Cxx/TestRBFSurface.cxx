@@ -212,6 +212,11 @@ void CheckPrior()
   filter->Update();
   CheckSurface(filter->GetOutput(), 0.006, "with an implicit function as prior");
   LACUNA_CHECK(GetField(filter->GetOutput(), "PriorUsed") == 1);
+  const std::vector<std::string> steps = lacuna::Provenance::Get(filter->GetOutput());
+  LACUNA_CHECK(steps.back().find("Radius=1") != std::string::npos);
+  filter->SetInputConnection(1, sphere->GetOutputPort()); // not looked at, and no origin
+  filter->Update();
+  LACUNA_CHECK(lacuna::Provenance::Get(filter->GetOutput()) == steps);
   filter->SetPriorFunction(nullptr);
 
   sphere->SetRadius(0.4);
