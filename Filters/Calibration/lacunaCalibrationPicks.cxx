@@ -77,30 +77,16 @@ vtkIdType GetSliceNumber(vtkImageData* slices, const lacuna::ProbePoses& poses, 
 // How many of these slices are flagged, and why; empty: none is.
 std::string DescribeFlags(const std::vector<int>& status)
 {
-  static const std::pair<int, const char*> flags[] = {
-    { lacuna::TrackedSlices::PoseInvalid, "without a pose" },
-    { lacuna::TrackedSlices::ImageInvalid, "without a good picture" },
-    { lacuna::TrackedSlices::TooFast, "too fast" }, { lacuna::TrackedSlices::GatedOut, "gated out" }
-  };
-  const auto flagged = std::count_if(status.begin(), status.end(), [](int s) { return s != 0; });
-  if (flagged == 0)
+  lacuna::SliceFlagCounts counts;
+  for (const int flags : status)
   {
-    return {};
+    counts.Add(static_cast<unsigned char>(flags));
   }
-  std::string text = std::to_string(flagged) + " of " + std::to_string(status.size()) +
-    " slices, by their SliceStatus:";
-  const char* separator = " ";
-  for (const auto& [flag, name] : flags)
-  {
-    const auto count =
-      std::count_if(status.begin(), status.end(), [flag = flag](int s) { return s & flag; });
-    if (count != 0)
-    {
-      text += separator + std::to_string(count) + " " + name + " (" + std::to_string(flag) + ")";
-      separator = ", ";
-    }
-  }
-  return text;
+  const std::string flags = counts.Describe();
+  return counts.GetNumberOfSlices() == 0
+    ? ""
+    : std::to_string(counts.GetNumberOfSlices()) + " of " + std::to_string(status.size()) +
+      " slices, by their SliceStatus" + (flags.empty() ? "" : ": " + flags);
 }
 
 // The picks as they are given.

@@ -7,6 +7,7 @@
 #include "lacunaSliceImage.h"
 #include "vtkType.h"
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -24,6 +25,10 @@ namespace PoseJudge
 {
 /// mm; coordinates are handed on as float.
 constexpr double LargestCoordinate = 1e38;
+
+/// Of vtkLacunaSliceAlgorithm::BadPoseRules.
+inline constexpr std::array<const char*, 3> BadPoseRuleNames{ "Refuse", "LeaveOut",
+  "KeepOutliers" };
 
 struct Slice
 {

@@ -24,6 +24,7 @@
 #include <numeric>
 #include <sstream>
 #include <stdexcept>
+#include <utility>
 
 namespace
 {
@@ -76,9 +77,6 @@ void CheckStack(vtkImageData* stack)
     }
   }
 }
-
-constexpr std::array<const char*, 4> FlagNames{ "pose invalid", "image invalid", "too fast",
-  "gated out" };
 }
 
 //------------------------------------------------------------------------------
@@ -255,11 +253,7 @@ std::vector<lacuna::SliceImages::Candidate> lacuna::SliceImages::FindCandidates(
     const bool isUsable = tracked.IsUsable(number, selection.AcceptedFlags) && !isToCome[number];
     if (!isUsable)
     {
-      for (std::size_t flag = 0; flag < FlagNames.size(); ++flag)
-      {
-        this->FlagCounts[flag] += (tracked.GetStatus(number) >> flag) & 1;
-      }
-      ++this->NumberLeftOut;
+      this->Flags.Add(tracked.GetStatus(number));
     }
     const bool isCandidate = tracked.IsUsable(number, orExpected);
     const bool isGatedOut = !isCandidate &&
@@ -591,32 +585,23 @@ void lacuna::SliceImages::HideSlices()
 //------------------------------------------------------------------------------
 std::string lacuna::SliceImages::DescribeFlags() const
 {
-  std::ostringstream text;
-  text << this->NumberLeftOut << " of " << this->GetNumberOfLayers()
-       << " are flagged in SliceStatus";
-  const char* separator = ": ";
-  for (std::size_t flag = 0; flag < FlagNames.size(); ++flag)
-  {
-    if (this->FlagCounts[flag] > 0)
-    {
-      text << separator << this->FlagCounts[flag] << " " << FlagNames[flag];
-      separator = ", ";
-    }
-  }
-  return text.str();
+  const std::string flags = this->Flags.Describe();
+  return std::to_string(this->Flags.GetNumberOfSlices()) + " of " +
+    std::to_string(this->GetNumberOfLayers()) + " are flagged in SliceStatus" +
+    (flags.empty() ? "" : ": " + flags);
 }
 
 //------------------------------------------------------------------------------
 std::string lacuna::SliceImages::DescribeRemedy() const
 {
-  constexpr std::array<const char*, 4> properties{ nullptr, "UseImageInvalid", "UseTooFast",
-    "UseGatedOut" };
   std::string list;
-  for (std::size_t flag = 1; flag < properties.size(); ++flag)
+  for (const auto& [flag, property] : { std::pair{ TrackedSlices::ImageInvalid, "UseImageInvalid" },
+         std::pair{ TrackedSlices::TooFast, "UseTooFast" },
+         std::pair{ TrackedSlices::GatedOut, "UseGatedOut" } })
   {
-    if (this->FlagCounts[flag] > 0)
+    if (this->Flags.Has(flag))
     {
-      list += (list.empty() ? "" : ", ") + std::string(properties[flag]);
+      list += (list.empty() ? "" : ", ") + std::string(property);
     }
   }
   return list.empty() ? "mend the SliceStatus of those whose pose is right"

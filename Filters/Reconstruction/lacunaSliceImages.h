@@ -5,6 +5,7 @@
 #define lacunaSliceImages_h
 
 #include "lacunaSliceFan.h"
+#include "lacunaSliceFlags.h"
 #include "lacunaSliceImage.h"
 #include "lacunaSweepEnds.h"
 #include "vtkSmartPointer.h"
@@ -93,8 +94,8 @@ struct SliceImages
   /// "2 sweeps: slices 0 to 20, at most 1 mm apart; slices 21 to 41, ..."; and where they end.
   std::string DescribeSweeps() const;
 
-  /// How many slices of the stack are flagged with what, for a message: "20 of 21 are left out: 18
-  /// pose invalid, 2 gated out".
+  /// How many slices of the stack are flagged with what, for a message: "20 of 21 are flagged in
+  /// SliceStatus: 18 pose invalid (1), 2 gated out (8)".
   std::string DescribeFlags() const;
   /// What to do to get more of them: "set UseTooFast, UseGatedOut to take the flagged ones".
   std::string DescribeRemedy() const;
@@ -148,8 +149,7 @@ private:
   void DropBadPoses(const TrackedSlices& tracked, std::vector<Candidate>& candidates,
     const SliceSelection& selection);
 
-  std::array<int, 4> FlagCounts{ 0, 0, 0, 0 };
-  int NumberLeftOut = 0;
+  SliceFlagCounts Flags; // of slices that are left out
 };
 }
 #endif

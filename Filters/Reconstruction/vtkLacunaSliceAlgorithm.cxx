@@ -2,6 +2,7 @@
 #include "vtkLacunaSliceAlgorithm.h"
 
 #include "lacunaFieldData.h"
+#include "lacunaPoseJudge.h"
 #include "lacunaSliceImages.h"
 #include "vtkFieldData.h"
 #include "vtkImageData.h"
@@ -19,7 +20,6 @@ using SDDP = vtkStreamingDemandDrivenPipeline;
 
 namespace
 {
-constexpr std::array<const char*, 3> BadPoseRuleNames{ "Refuse", "LeaveOut", "KeepOutliers" };
 constexpr std::array<const char*, 3> GapMethodNames{ "Automatic", "Given", "Unlimited" };
 }
 
@@ -90,7 +90,7 @@ void vtkLacunaSliceAlgorithm::DescribeSlices(lacuna::Properties& properties) con
     .Add("UseImageInvalid", this->UseImageInvalid)
     .Add("UseTooFast", this->UseTooFast)
     .Add("UseGatedOut", this->UseGatedOut)
-    .Add("BadPoses", this->BadPoses, BadPoseRuleNames);
+    .Add("BadPoses", this->BadPoses, lacuna::PoseJudge::BadPoseRuleNames);
 }
 
 //------------------------------------------------------------------------------

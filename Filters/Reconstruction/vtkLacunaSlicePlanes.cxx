@@ -27,8 +27,6 @@ namespace
 {
 constexpr std::array<const char*, 3> ColoringNames{ "Intensity", "Speed", "RegistrationError" };
 constexpr std::array<const char*, 3> InvalidSliceChoiceNames{ "LeaveOut", "Outline", "Show" };
-// Those of vtkLacunaSliceAlgorithm::BadPoseRules, but for Refuse.
-constexpr std::array<const char*, 3> BadPoseRuleNames{ "", "LeaveOut", "KeepOutliers" };
 
 // Slices k of the stack that a piece of the output has; last < first: none.
 struct Slab
@@ -221,6 +219,7 @@ void vtkLacunaSlicePlanes::Describe(lacuna::Properties& properties) const
     .Add("SpeedLimit", this->SpeedLimit, ValueRange::AtLeast(0, "mm/s"))
     .Add("OutlineOnly", this->OutlineOnly)
     .Add("InvalidSlices", this->InvalidSlices, InvalidSliceChoiceNames)
-    .Add("BadPoses", this->BadPoses, BadPoseRuleNames)
+    .Add("BadPoses", this->BadPoses,
+      lacuna::Choices(lacuna::PoseJudge::BadPoseRuleNames, vtkLacunaSliceAlgorithm::LeaveOut))
     .Add("MaximumNumberOfPoints", this->MaximumNumberOfPoints, ValueRange::AtLeast(4));
 }

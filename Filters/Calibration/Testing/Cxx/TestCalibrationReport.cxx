@@ -207,8 +207,8 @@ void TestFlags()
     LACUNA_CHECK(slice < 3 || slice > 7);
   }
   LACUNA_CHECK_CONTAINS(part.Warnings,
-    "left out are 5 of 40 slices, by their SliceStatus: 1 without a pose (1), 1 without a good "
-    "picture (2), 2 too fast (4), 2 gated out (8)");
+    "left out are 5 of 40 slices, by their SliceStatus: 1 pose invalid (1), 1 image invalid (2), "
+    "2 too fast (4), 2 gated out (8)");
   LACUNA_CHECK(all.Warnings.find("left out") == std::string::npos);
   const auto none = Spoilt(
     slices.Get(), [](vtkImageData* s) { s->GetFieldData()->GetArray("SliceStatus")->Fill(4); });
@@ -329,7 +329,7 @@ void TestStylus()
     LACUNA_CHECK(found.GetFigure("CalibrationRms") < 0.2);
     LACUNA_CHECK(found.Residuals->GetNumberOfRows() == 29);
     LACUNA_CHECK(found.Residuals->GetValueByName(0, "Target").ToString() == "Tip");
-    LACUNA_CHECK_CONTAINS(found.Warnings, "1 without a pose (1)");
+    LACUNA_CHECK_CONTAINS(found.Warnings, "1 pose invalid (1)");
     LACUNA_CHECK(!found.Slices->GetFieldData()->HasArray("ImageToReference"));
     LACUNA_CHECK(!found.Slices->GetFieldData()->HasArray("PixelSpacing"));
     LACUNA_CHECK_CONTAINS(

@@ -199,7 +199,8 @@ void TestSlicesLeftOut()
 
   const auto marked = MakeStack(MakePoses(3), VTK_UNSIGNED_CHAR, { 1, 1, 8 });
   LACUNA_CHECK_CONTAINS(GetMessages(marked).Errors,
-    "no slice is left to look at: 3 of 3 are flagged in SliceStatus: 2 pose invalid, 1 gated out");
+    "no slice is left to look at: 3 of 3 are flagged in SliceStatus: 2 pose invalid (1), 1 gated "
+    "out (8)");
   LACUNA_CHECK(GetMessages(marked, [](Caster* c) { c->UseGatedOutOn(); }).Errors.empty());
   const auto broken = MakeStack(poses);
   LACUNA_CHECK_CONTAINS(

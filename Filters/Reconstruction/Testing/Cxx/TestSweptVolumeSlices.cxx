@@ -100,9 +100,10 @@ void TestTooFew()
   const std::string few = GetError(MakeStack(MakePoses(4), VTK_SHORT, { 1, 0, 2, 12 }));
   LACUNA_CHECK_CONTAINS(few, "1 of 4 can be used, at least 2 are needed");
   LACUNA_CHECK_CONTAINS(few,
-    "3 of 4 are flagged in SliceStatus: 1 pose invalid, 1 image invalid, 1 too fast, 1 gated out");
+    "3 of 4 are flagged in SliceStatus: 1 pose invalid (1), 1 image invalid (2), 1 too fast (4), 1 "
+    "gated out (8)");
   LACUNA_CHECK_CONTAINS(
-    GetError(MakeStack(MakePoses(4), VTK_SHORT, { 1, 1, 1, 1 })), "4 pose invalid");
+    GetError(MakeStack(MakePoses(4), VTK_SHORT, { 1, 1, 1, 1 })), "4 pose invalid (1)");
   LACUNA_CHECK_THAT(GetError(MakeStack(MakePoses(1)),
                       [](vtkLacunaSweptVolume* f) { f->SetInterpolationToNearestVoxel(); })
                       .empty(),
