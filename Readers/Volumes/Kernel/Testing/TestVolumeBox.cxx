@@ -6,12 +6,12 @@
 using namespace lacuna;
 using namespace volume_testing;
 
-TEST(VolumeGrid, KeepsWhatIsStraight)
+TEST(VolumeBox, KeepsWhatIsStraight)
 {
   const Matrix4 turn = Matrix4::Rotation({ { 1, 2, 3 } }, 0.7);
   Matrix4 matrix = Matrix4::FromColumns(
     0.9 * turn.Column(0), 0.9 * turn.Column(1), 1.1 * turn.Column(2), { { 1, 2, 3 } });
-  const VolumeGrid grid = FindVolumeGrid(matrix, { 512, 512, 300 });
+  const VolumeBox grid = FindVolumeBox(matrix, { 512, 512, 300 });
   EXPECT_FALSE(grid.ReversedSlices);
   for (int i = 0; i < 3; ++i)
   {
@@ -20,60 +20,60 @@ TEST(VolumeGrid, KeepsWhatIsStraight)
   EXPECT_NEAR(grid.Spacing[2], 1.1, 1e-15);
   EXPECT_EQ(grid.Origin[2], 3);
   // exactly, along the axes
-  const VolumeGrid straight =
-    FindVolumeGrid(Matrix4::Scaling({ { -0.9, -0.7, 0.3 } }), { 512, 512, 300 });
+  const VolumeBox straight =
+    FindVolumeBox(Matrix4::Scaling({ { -0.9, -0.7, 0.3 } }), { 512, 512, 300 });
   EXPECT_EQ(straight.Spacing[0], 0.9);
   EXPECT_EQ(straight.Spacing[1], 0.7);
   EXPECT_EQ(straight.Axes[0][0], -1);
   EXPECT_EQ(straight.Axes[0][1], 0);
 }
 
-TEST(VolumeGrid, TurnsLeftHandedAxes)
+TEST(VolumeBox, TurnsLeftHandedAxes)
 {
   const Matrix4 matrix =
     Matrix4::FromColumns({ { 0.9, 0, 0 } }, { { 0, 0.7, 0 } }, { { 0, 0, -2 } }, { { 1, 2, 50 } });
-  const VolumeGrid grid = FindVolumeGrid(matrix, { 10, 10, 21 });
+  const VolumeBox grid = FindVolumeBox(matrix, { 10, 10, 21 });
   EXPECT_TRUE(grid.ReversedSlices);
   EXPECT_EQ(grid.Origin[2], 10);
   EXPECT_EQ(grid.Axes[2][2], 1);
 }
 
-TEST(VolumeGrid, RoundedDirectionsPassAndShearedOnesDoNot)
+TEST(VolumeBox, RoundedDirectionsPassAndShearedOnesDoNot)
 {
   const auto sheared = [](double by)
   {
     return Matrix4::FromColumns(
       { { 1, 0, 0 } }, { { 0, 1, 0 } }, { { 0, by, 1 } }, { { 0, 0, 0 } });
   };
-  const VolumeGrid grid = FindVolumeGrid(sheared(1e-4), { 100, 100, 100 });
+  const VolumeBox grid = FindVolumeBox(sheared(1e-4), { 100, 100, 100 });
   EXPECT_NEAR(Dot(grid.Axes[1], grid.Axes[2]), 0, 1e-15);
   // each axis takes half of the shear
   EXPECT_NEAR(grid.Axes[1][2], -0.5e-4, 1e-8);
   ExpectParts(GetError(
                 [&] {
-                  FindVolumeGrid(sheared(2e-3), { 100, 100, 100 });
+                  FindVolumeBox(sheared(2e-3), { 100, 100, 100 });
                 }),
     { "not at right angles", "by 0.14", "mm" });
-  ExpectParts(GetError([&] { FindVolumeGrid(sheared(3), { 100, 100, 100 }); }), { "far from it" });
+  ExpectParts(GetError([&] { FindVolumeBox(sheared(3), { 100, 100, 100 }); }), { "far from it" });
 }
 
-TEST(VolumeGrid, RefusesNonsense)
+TEST(VolumeBox, RefusesNonsense)
 {
   Matrix4 matrix;
   matrix(1, 1) = std::numeric_limits<double>::quiet_NaN();
-  ExpectParts(GetError([&] { FindVolumeGrid(matrix, { 4, 4, 4 }); }), { "not finite" });
+  ExpectParts(GetError([&] { FindVolumeBox(matrix, { 4, 4, 4 }); }), { "not finite" });
   matrix(1, 1) = 0;
-  ExpectParts(GetError([&] { FindVolumeGrid(matrix, { 4, 4, 4 }); }), { "axis 1", "no length" });
+  ExpectParts(GetError([&] { FindVolumeBox(matrix, { 4, 4, 4 }); }), { "axis 1", "no length" });
   matrix(1, 0) = matrix(1, 1) = 1;
   matrix(0, 1) = matrix(0, 0) = 1; // two axes the same
-  ExpectParts(GetError([&] { FindVolumeGrid(matrix, { 4, 4, 4 }); }), { "right angles" });
+  ExpectParts(GetError([&] { FindVolumeBox(matrix, { 4, 4, 4 }); }), { "right angles" });
   matrix = Matrix4();
   matrix(0, 0) = 1e300;
   matrix(1, 0) = 1e300;
-  GetError([&] { FindVolumeGrid(matrix, { 4, 4, 4 }); });
+  GetError([&] { FindVolumeBox(matrix, { 4, 4, 4 }); });
 }
 
-TEST(VolumeGrid, Types)
+TEST(VolumeBox, Types)
 {
   EXPECT_EQ(GetVolumeType(ScalarType::UInt8, 1, 0), ScalarType::UInt8);
   EXPECT_EQ(GetVolumeType(ScalarType::UInt8, 1, -1024), ScalarType::Int16);
@@ -85,7 +85,7 @@ TEST(VolumeGrid, Types)
   EXPECT_EQ(GetVolumeType(ScalarType::Float64, 2, 0), ScalarType::Float64);
 }
 
-TEST(VolumeGrid, PartsAndValues)
+TEST(VolumeBox, PartsAndValues)
 {
   NrrdFile file;
   file.Set("type", "short");
@@ -101,7 +101,7 @@ TEST(VolumeGrid, PartsAndValues)
   VolumeFile volume = ReadVolumeFile(stored.GetPath());
   volume.Slope = 2;
   volume.Intercept = -1024;
-  const VolumeGrid grid = FindVolumeGrid(volume.IndexToPatient, { Columns, Rows, Slices });
+  const VolumeBox grid = FindVolumeBox(volume.IndexToPatient, { Columns, Rows, Slices });
   const auto pixels = PixelSource::Open(volume.Slices);
   ThreadExecution execution(1);
   std::vector<std::int32_t> part(4);

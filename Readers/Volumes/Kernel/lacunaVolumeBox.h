@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// The grid of a volume as VTK stores it, and its voxels.
-#ifndef lacunaVolumeGrid_h
-#define lacunaVolumeGrid_h
+#ifndef lacunaVolumeBox_h
+#define lacunaVolumeBox_h
 
 #include "lacunaMatrix4.h"
 #include "lacunaScalarType.h"
@@ -18,7 +18,7 @@ class Execution;
 class PixelSource;
 
 /// A right-handed box: the voxel (i, j, k) lies at Origin + i Spacing[0] Axes[0] + ...
-struct VolumeGrid
+struct VolumeBox
 {
   std::array<std::int64_t, 3> Dimensions{};
   std::array<double, 3> Spacing{}; ///< mm, > 0
@@ -36,7 +36,7 @@ constexpr double VolumeTolerance = 0.05;
 /// makes their angles right (polar decomposition; Higham 1986, SIAM J. Sci. Stat. Comput. 7, 1160).
 /// Throws std::invalid_argument when the matrix is not finite, an axis has no length, or a corner
 /// would move by more than VolumeTolerance.
-VolumeGrid FindVolumeGrid(
+VolumeBox FindVolumeBox(
   const Matrix4& indexToPatient, const std::array<std::int64_t, 3>& dimensions);
 
 /// The type of voxels with the values slope * stored + intercept: that which is stored without a
@@ -47,7 +47,7 @@ ScalarType GetVolumeType(ScalarType stored, double slope, double intercept);
 /// Reads the part extent (first and last column, row and slice of the grid) of file's voxels into
 /// voxels of type GetVolumeType, x fastest, components together. pixels: those of file.Slices.
 /// Throws std::runtime_error when they cannot be read, and Aborted.
-void ReadVolume(const VolumeFile& file, const VolumeGrid& grid, PixelSource& pixels,
+void ReadVolume(const VolumeFile& file, const VolumeBox& grid, PixelSource& pixels,
   const std::array<int, 6>& extent, void* voxels, Execution& execution);
 }
 #endif

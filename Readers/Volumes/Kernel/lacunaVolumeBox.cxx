@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "lacunaVolumeGrid.h"
+#include "lacunaVolumeBox.h"
 
 #include "lacunaExecution.h"
 #include "lacunaParameterText.h"
@@ -58,7 +58,7 @@ void Convert(const In* in, Out* out, std::size_t count, double slope, double int
 }
 
 //------------------------------------------------------------------------------
-VolumeGrid FindVolumeGrid(
+VolumeBox FindVolumeBox(
   const Matrix4& indexToPatient, const std::array<std::int64_t, 3>& dimensions)
 {
   if (!indexToPatient.IsFinite())
@@ -66,7 +66,7 @@ VolumeGrid FindVolumeGrid(
     throw std::invalid_argument("the directions, distances or the place of the voxels are not "
                                 "finite numbers");
   }
-  VolumeGrid grid;
+  VolumeBox grid;
   grid.Dimensions = dimensions;
   grid.Origin = indexToPatient.Column(3);
   std::array<Vec3, 3> steps{};
@@ -165,7 +165,7 @@ ScalarType GetVolumeType(ScalarType stored, double slope, double intercept)
 }
 
 //------------------------------------------------------------------------------
-void ReadVolume(const VolumeFile& file, const VolumeGrid& grid, PixelSource& pixels,
+void ReadVolume(const VolumeFile& file, const VolumeBox& grid, PixelSource& pixels,
   const std::array<int, 6>& extent, void* voxels, Execution& execution)
 {
   const ScalarType stored = pixels.GetScalarType();
