@@ -2,7 +2,6 @@
 #include "lacunaProvenance.h"
 
 #include "lacunaCoordinates.h"
-#include "lacunaMirrored.h"
 #include "lacunaVolumeDirection.h"
 #include "vtkDataArray.h"
 #include "vtkDataSet.h"
@@ -128,7 +127,6 @@ void Record(vtkDataObject* output, vtkObjectBase* algorithm,
   lacuna::VolumeDirection::Update(output);
   if (!inputs.empty() && inputs.front() != output)
   {
-    lacuna::Mirrored::Pass(inputs.front(), output);
     lacuna::Coordinates::Pass(inputs.front(), output);
   }
 }

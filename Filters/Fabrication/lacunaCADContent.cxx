@@ -5,7 +5,6 @@
 #include "lacunaDepthMap.h"
 #include "lacunaExecution.h"
 #include "lacunaFieldData.h"
-#include "lacunaMirrored.h"
 #include "lacunaPressPosition.h"
 #include "vtkCellArray.h"
 #include "vtkCellArrayIterator.h"
@@ -387,7 +386,8 @@ std::string NameOf(vtkInformation* meta, const std::string& otherwise)
 // Defect Model has one, for its top, and lies in the patient.
 std::optional<lacuna::Matrix4> FindPressToPatient(vtkDataObject* data)
 {
-  vtkDataArray* array = lacuna::FieldData::Find(data, "PressToPatient", 16, 1);
+  vtkDataArray* array =
+    lacuna::FieldData::Find(data, lacuna::Coordinates::PressToPatientName, 16, 1);
   if (!array || lacuna::Coordinates::Get(data) == lacuna::Coordinates::Patient)
   {
     return std::nullopt;
@@ -464,7 +464,7 @@ void lacuna::CADContent::Collect(vtkDataObject* data, const std::string& name, b
     item.Lost = this->FindLost(
       data, name.empty() ? "" : "block '" + name + "': ", item.PressToPatient.has_value());
     this->Items.push_back(std::move(item));
-    if (lacuna::Mirrored::IsMarked(data))
+    if (lacuna::Coordinates::IsMirrored(data))
     {
       const std::string what = (name.empty() ? "the input" : "block '" + name + "'") +
         " is a mirror image of the patient (field data Mirrored)";

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lacunaFittedPart.h"
 
+#include "lacunaCoordinates.h"
 #include "lacunaDepthMap.h"
 #include "lacunaFaceRelief.h"
-#include "lacunaMirrored.h"
 #include "vtkCellArray.h"
 #include "vtkCellArrayIterator.h"
 #include "vtkCellData.h"
@@ -70,7 +70,7 @@ lacuna::FittedPart::FittedPart(vtkImageData* map, const std::string& purpose)
     throw std::runtime_error("this is a perspective depth map; " + purpose +
       " needs a parallel one, filled by RBF Hole Filler");
   }
-  if (lacuna::Mirrored::IsMarked(map))
+  if (lacuna::Coordinates::IsMirrored(map))
   {
     throw std::runtime_error("the depth map is a mirror image (field data Mirrored), so " +
       purpose +
@@ -142,7 +142,7 @@ lacuna::FittedPart::FittedPart(vtkImageData* map, const std::string& purpose)
 lacuna::FittedPart::FittedPart(lacuna::Execution& execution, vtkPolyData* solid, double spacing,
   double margin, const std::string& purpose)
 {
-  if (lacuna::Mirrored::IsMarked(solid))
+  if (lacuna::Coordinates::IsMirrored(solid))
   {
     throw std::runtime_error("the solid is a mirror image (field data Mirrored), so " + purpose +
       " made from it would not fit the patient");

@@ -177,7 +177,7 @@ void vtkLacunaDefectModel::Make(const lacuna::Ports& ports, lacuna::AlgorithmExe
   for (vtkDataObject* output :
     { static_cast<vtkDataObject*>(solid), static_cast<vtkDataObject*>(top) })
   {
-    lacuna::FieldData::SetMatrices(output, PressToPatientName, { toPatient });
+    lacuna::FieldData::SetMatrices(output, lacuna::Coordinates::PressToPatientName, { toPatient });
     lacuna::FieldData::Set(output, "BlockSize",
       { spacing[0] * static_cast<double>(model.TopSize.Columns - 1),
         spacing[1] * static_cast<double>(model.TopSize.Rows - 1), model.Bottom - model.Highest },

@@ -55,7 +55,6 @@ public:
   vtkTypeMacro(vtkLacunaDefectModel, vtkPolyDataAlgorithm);
 
   static constexpr const char* ModelFaceName = "ModelFace";
-  static constexpr const char* PressToPatientName = "PressToPatient";
 
   enum FloorShapeType
   {

@@ -3,9 +3,9 @@
 
 #include "lacunaAlgorithmExecution.h"
 #include "lacunaAtomicFile.h"
+#include "lacunaCoordinates.h"
 #include "lacunaFieldData.h"
 #include "lacunaGCode.h"
-#include "lacunaMirrored.h"
 #include "lacunaParameterText.h"
 #include "lacunaPressPosition.h"
 #include "lacunaPrintableText.h"
@@ -217,7 +217,7 @@ std::vector<std::string> GetComments(
     comments.push_back("Motions joined to arcs, at most " +
       lacuna::FormatNumber(options.ArcTolerance) + " mm above the path");
   }
-  if (lacuna::Mirrored::IsMarked(path))
+  if (lacuna::Coordinates::IsMirrored(path))
   {
     comments.emplace_back("MIRROR IMAGE, left is right");
   }
@@ -316,7 +316,7 @@ void vtkLacunaGCodeWriter::WriteProgram(vtkPolyData* path)
 {
   lacuna::Vec3 start{ 0, 0, 0 };
   const std::vector<lacuna::GCodeMove> moves = GetMoves(path, start);
-  const bool mirrored = lacuna::Mirrored::IsMarked(path);
+  const bool mirrored = lacuna::Coordinates::IsMirrored(path);
   if (mirrored && !this->AllowMirrored)
   {
     throw std::runtime_error(

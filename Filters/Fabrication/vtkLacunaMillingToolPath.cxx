@@ -6,7 +6,6 @@
 #include "lacunaFieldData.h"
 #include "lacunaGridLayer.h"
 #include "lacunaMaterialRemoval.h"
-#include "lacunaMirrored.h"
 #include "lacunaParameterText.h"
 #include "lacunaPressPosition.h"
 #include "lacunaToolPath.h"
@@ -38,7 +37,6 @@ vtkStandardNewMacro(vtkLacunaMillingToolPath);
 
 namespace
 {
-constexpr const char* PressToPatientName = "PressToPatient";
 constexpr std::array<const char*, 2> PatternNames{ "ZigZag", "OneWay" };
 
 //------------------------------------------------------------------------------
@@ -128,7 +126,7 @@ Totals SetPath(vtkPolyData* output, const lacuna::ToolPath& path, const FeedRate
 // patient.
 void MarkMoved(vtkPolyData* output, double way)
 {
-  output->GetFieldData()->RemoveArray(PressToPatientName);
+  output->GetFieldData()->RemoveArray(lacuna::Coordinates::PressToPatientName);
   lacuna::Coordinates::Mark(output, lacuna::Coordinates::Press); // without that before the press
   lacuna::FieldData::Set(output, lacuna::PressPosition::MovedName, { way }, 1);
 }
@@ -313,7 +311,7 @@ void vtkLacunaMillingToolPath::Make(
   const lacuna::Ports& ports, lacuna::AlgorithmExecution& execution)
 {
   auto* grid = ports.GetInput<vtkStructuredGrid>();
-  lacuna::FieldData::Find(grid, PressToPatientName, 16, 1);
+  lacuna::FieldData::Find(grid, lacuna::Coordinates::PressToPatientName, 16, 1);
   auto told = vtkSmartPointer<vtkStringArray>::New();
   told->SetName(WarningsName);
   const auto warn = [this, &told](const std::string& warning)
@@ -326,7 +324,7 @@ void vtkLacunaMillingToolPath::Make(
   };
   const std::string elsewhere = lacuna::PressPosition::Check(grid);
   warn(elsewhere);
-  if (lacuna::Mirrored::IsMarked(grid))
+  if (lacuna::Coordinates::IsMirrored(grid))
   {
     vtkWarningMacro("the surface is a mirror image of the patient (field data Mirrored), and so is "
                     "what is milled with this path");

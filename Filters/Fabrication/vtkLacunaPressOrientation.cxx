@@ -315,7 +315,8 @@ void vtkLacunaPressOrientation::Make(
     execution.SetStage(0.3, 1);
     const lacuna::PressSurface surface = plan.Make(execution);
     SetNodes(output, surface, plan.GetColumns(), plan.GetRows());
-    lacuna::FieldData::SetMatrices(output, PressToPatientName, { toWorld * surface.PressToRelief });
+    lacuna::FieldData::SetMatrices(
+      output, lacuna::Coordinates::PressToPatientName, { toWorld * surface.PressToRelief });
     lacuna::FieldData::Set(output, "DraftAngle", { surface.DraftAngle }, 1);
     lacuna::FieldData::Set(output, "Depth", { surface.Depth }, 1);
     lacuna::FieldData::Set(output, "BlockSize", ToVector(surface.BlockSize), 3);

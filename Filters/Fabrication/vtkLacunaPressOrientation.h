@@ -101,7 +101,6 @@ public:
   static constexpr const char* PressRegionName = "PressRegion";
   static constexpr const char* DefectMaskName = "DefectMask";
   static constexpr const char* WallAngleName = "WallAngle";
-  static constexpr const char* PressToPatientName = "PressToPatient";
   static constexpr const char* SingleValuedName = "SingleValued";
   static constexpr const char* SuggestedViewDirectionName = "SuggestedViewDirection";
 

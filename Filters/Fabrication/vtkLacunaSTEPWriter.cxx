@@ -3,8 +3,8 @@
 
 #include "lacunaAlgorithmExecution.h"
 #include "lacunaAtomicFile.h"
+#include "lacunaCoordinates.h"
 #include "lacunaFacetedSolid.h"
-#include "lacunaMirrored.h"
 #include "lacunaPrintableText.h"
 #include "lacunaProgram.h"
 #include "lacunaProvenance.h"
@@ -115,7 +115,7 @@ void vtkLacunaSTEPWriter::WriteFile()
 //------------------------------------------------------------------------------
 void vtkLacunaSTEPWriter::WriteSolid(vtkPolyData* surface)
 {
-  const bool mirrored = lacuna::Mirrored::IsMarked(surface);
+  const bool mirrored = lacuna::Coordinates::IsMirrored(surface);
   if (mirrored && !this->AllowMirrored)
   {
     throw std::runtime_error(

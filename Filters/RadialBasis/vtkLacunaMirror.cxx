@@ -3,10 +3,10 @@
 
 #include "lacunaArrayScalarType.h"
 #include "lacunaArrays.h"
+#include "lacunaCoordinates.h"
 #include "lacunaDepthMap.h"
 #include "lacunaFieldData.h"
 #include "lacunaMemory.h"
-#include "lacunaMirrored.h"
 #include "lacunaMirroredMap.h"
 #include "lacunaMirroredVolume.h"
 #include "lacunaVolumeDirection.h"
@@ -447,7 +447,7 @@ void vtkLacunaMirror::Make(const lacuna::Ports& ports, lacuna::AlgorithmExecutio
   bool isMap = false;
   const auto check = [&]
   {
-    if (lacuna::Mirrored::IsMarked(input))
+    if (lacuna::Coordinates::IsMirrored(input))
     {
       throw std::runtime_error("the input is a mirror image already (field data Mirrored); mirror "
                                "the original");
@@ -509,7 +509,7 @@ void vtkLacunaMirror::Make(const lacuna::Ports& ports, lacuna::AlgorithmExecutio
   {
     Internals::AddFieldData(data, result);
   }
-  lacuna::Mirrored::Mark(mirrored, origin, result.Plane.Normal);
+  lacuna::Coordinates::MarkMirrored(mirrored, origin, result.Plane.Normal);
   ports.GetOutput<vtkImageData>()->ShallowCopy(mirrored);
 }
 

@@ -11,8 +11,8 @@
 #include "lacunaPrintableText.h"
 #include "lacunaReading.h"
 #include "lacunaSequenceText.h"
+#include "lacunaVolumeBox.h"
 #include "lacunaVolumeDirection.h"
-#include "lacunaVolumeGrid.h"
 #include "vtkDataArray.h"
 #include "vtkDataObject.h"
 #include "vtkExtentTranslator.h"
@@ -43,7 +43,7 @@ bool IsNamedNifti(const std::string& fileName)
 struct vtkLacunaVolumeReader::Content
 {
   lacuna::VolumeFile File;
-  lacuna::VolumeGrid Grid;
+  lacuna::VolumeBox Grid;
   std::unique_ptr<lacuna::PixelSource> Pixels; // refers to File
   lacuna::ScalarType Type = lacuna::ScalarType::UInt8;
   bool Warned = false;
@@ -96,7 +96,7 @@ void vtkLacunaVolumeReader::OpenVolume(Content& content)
   const lacuna::SequenceHeader& slices = content.File.Slices;
   try
   {
-    content.Grid = lacuna::FindVolumeGrid(
+    content.Grid = lacuna::FindVolumeBox(
       content.File.IndexToPatient, { slices.Columns, slices.Rows, slices.Frames });
   }
   catch (const std::invalid_argument& e)
@@ -137,7 +137,7 @@ void vtkLacunaVolumeReader::Announce(const lacuna::Ports& ports)
 //------------------------------------------------------------------------------
 void vtkLacunaVolumeReader::AnnounceGrid(vtkInformation* info) const
 {
-  const lacuna::VolumeGrid& grid = this->Opened->Grid;
+  const lacuna::VolumeBox& grid = this->Opened->Grid;
   int extent[6] = { 0, 0, 0, 0, 0, 0 };
   double direction[9];
   for (std::size_t i = 0; i < 3; ++i)

@@ -4,7 +4,7 @@
 #include "lacunaFuzzTarget.h"
 #include "lacunaNiftiVolume.h"
 #include "lacunaPixelSource.h"
-#include "lacunaVolumeGrid.h"
+#include "lacunaVolumeBox.h"
 
 #include <cmath>
 #include <vector>
@@ -19,8 +19,8 @@ void ReadVoxels(const VolumeFile& file)
   const SequenceHeader& slices = file.Slices;
   Require(slices.Columns > 0 && slices.Rows > 0 && slices.Frames > 0 && slices.Channels > 0,
     "sizes are positive");
-  const VolumeGrid grid =
-    FindVolumeGrid(file.IndexToPatient, { slices.Columns, slices.Rows, slices.Frames });
+  const VolumeBox grid =
+    FindVolumeBox(file.IndexToPatient, { slices.Columns, slices.Rows, slices.Frames });
   Require(std::abs(Dot(Cross(grid.Axes[0], grid.Axes[1]), grid.Axes[2]) - 1) < 1e-9,
     "axes are right-handed");
   const auto pixels = PixelSource::Open(slices);

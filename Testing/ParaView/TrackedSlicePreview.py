@@ -41,7 +41,7 @@ for a, b in zip(*map(arrays, volumes)):
     assert len(a) > 1000 and (a == b).all()
 
 # a stop while the fan is sought in slices that are read for it is nothing but a stop
-from lacuna.vtkLacunaFiltersFreehand import vtkLacunaSweptVolume
+from lacuna.vtkLacunaFiltersReconstruction import vtkLacunaSweptVolume
 from lacuna.vtkLacunaReadersTrackedSlices import vtkLacunaTrackedSliceReader
 opened, stopped, said = vtkLacunaTrackedSliceReader(), vtkLacunaSweptVolume(), []
 opened.SetFileName(name)

@@ -37,7 +37,7 @@ const std::vector<Subject>& GetSubjects()
     AddSourceSubjects(all);
     AddReaderSubjects(all);
     AddImageSubjects(all);
-    AddFreehandSubjects(all);
+    AddSliceSubjects(all);
     AddSurfaceSubjects(all);
     return all;
   }();

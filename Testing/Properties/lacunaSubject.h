@@ -58,7 +58,7 @@ struct Subject
 const std::vector<Subject>& GetSubjects();
 
 void AddImageSubjects(std::vector<Subject>& subjects);
-void AddFreehandSubjects(std::vector<Subject>& subjects);
+void AddSliceSubjects(std::vector<Subject>& subjects);
 void AddSurfaceSubjects(std::vector<Subject>& subjects);
 void AddSourceSubjects(std::vector<Subject>& subjects);
 void AddReaderSubjects(std::vector<Subject>& subjects);

@@ -29,6 +29,8 @@ for file in Plugins/Lacuna/{Sources,Readers,Filters}/*.xml; do
   case $name in PolhemusVideoSource | SplineLoop) continue ;; esac # of devices; a part of RBF Hole Filler's
   grep -q "\"$name\", NewOf" Testing/Properties/lacuna*Subjects.cxx || complain "$name is in no property test (Testing/Properties)"
 done
+bad=$(git ls-files 'Filters/*.h' 'Readers/*.h' 'Sources/*.h' | grep -v /Testing/ | xargs -n 1 basename | sort | uniq -d)
+[ -z "$bad" ] || complain "all headers are installed in one folder; two are called $bad"
 bad=$(grep -nP '[^\x00-\x7F]' $sources | head -n 5 || true)
 [ -z "$bad" ] || complain "non-ASCII characters in C++: $bad"
 

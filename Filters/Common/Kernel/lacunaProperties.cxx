@@ -41,13 +41,10 @@ void Require(const std::string& error)
 std::string Choices::Describe() const
 {
   std::string text;
-  for (int i = 0; i < this->Size_; ++i)
+  for (int i = this->First; i < this->Size_; ++i)
   {
-    if (*this->Names[i])
-    {
-      text += text.empty() ? "" : i + 1 < this->Size_ ? ", " : " or ";
-      text += std::to_string(i) + " (" + this->Names[i] + ")";
-    }
+    text += text.empty() ? "" : i + 1 < this->Size_ ? ", " : " or ";
+    text += std::to_string(i) + " (" + this->Names[i] + ")";
   }
   return text;
 }

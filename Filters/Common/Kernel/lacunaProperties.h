@@ -17,14 +17,15 @@
 
 namespace lacuna
 {
-/// The names of an enum's values, from 0 on. Declared beside it, of a constexpr array of texts. What has an empty
-/// name may not be chosen; the last one has a name.
+/// The names of an enum's values, from 0 on. Declared beside it, of a constexpr array of texts.
 class Choices
 {
 public:
+  /// first: values below it may not be chosen.
   template <std::size_t Size>
-  constexpr Choices(const std::array<const char*, Size>& names)
+  constexpr Choices(const std::array<const char*, Size>& names, int first = 0)
     : Names(names.data())
+    , First(first)
     , Size_(static_cast<int>(Size))
   {
   }
@@ -32,7 +33,7 @@ public:
   /// Empty for a value that is none of them.
   const char* GetName(int value) const
   {
-    return value >= 0 && value < this->Size_ ? this->Names[value] : "";
+    return value >= this->First && value < this->Size_ ? this->Names[value] : "";
   }
   /// "0 (Female) or 1 (Male)".
   std::string Describe() const;
@@ -41,6 +42,7 @@ public:
 
 private:
   const char* const* Names;
+  int First;
   int Size_;
 };
 

@@ -21,7 +21,7 @@ struct VolumeFile
   SequenceHeader Slices;
   /// (column, row, slice), as stored and counted from 0, to the centre of the voxel in mm: patient
   /// coordinates (DICOM LPS), if the file's axes are the patient's. Not yet checked: see
-  /// FindVolumeGrid.
+  /// FindVolumeBox.
   Matrix4 IndexToPatient;
   /// Whether the file says that its axes are the patient's.
   bool IsPatient = false;

@@ -39,9 +39,10 @@ TEST(Properties, SaysWhatAChoiceMayBe)
   }
 }
 
-TEST(Properties, LeavesOutChoicesWithoutAName)
+TEST(Properties, LeavesOutTheFirstChoices)
 {
-  constexpr std::array<const char*, 3> rules{ "", "LeaveOut", "KeepOutliers" };
+  constexpr std::array<const char*, 3> names{ "Refuse", "LeaveOut", "KeepOutliers" };
+  const lacuna::Choices rules(names, 1);
   EXPECT_EQ(GetError(Properties().Add("BadPoses", 1, rules)), "");
   EXPECT_EQ(GetError(Properties().Add("BadPoses", 0, rules)),
     "BadPoses is 0; it must be 1 (LeaveOut) or 2 (KeepOutliers)");

@@ -96,5 +96,20 @@ int TestProvenance(int, char*[])
   LACUNA_CHECK(coordinates(path) == "Patient" && GetBeforePress(path).empty());
   lacuna::Coordinates::Clear(path);
   LACUNA_CHECK(coordinates(path) == "-");
+
+  // a mirror image stays one, whatever coordinates the output says it has, also without any
+  MarkMirrored(b, { 1, 2, 3 }, { 0, 1, 0 });
+  LACUNA_CHECK(coordinates(b) == "Press" && !IsMirrored(path));
+  Mark(path, Patient);
+  lacuna::Provenance::Record(path, step, { b }, "");
+  LACUNA_CHECK(coordinates(path) == "Patient" && IsMirrored(path));
+  lacuna::Coordinates::Clear(path);
+  LACUNA_CHECK(IsMirrored(path));
+  for (const char* name : { MirrorOriginName, MirrorNormalName })
+  {
+    LACUNA_CHECK(path->GetFieldData()->GetArray(name) == b->GetFieldData()->GetArray(name));
+  }
+  lacuna::Provenance::Record(unmarked, step, { a, b }, "");
+  LACUNA_CHECK(!IsMirrored(unmarked));
   return lacunaCheck::Result();
 }

@@ -33,7 +33,7 @@ void TestPlace()
     auto* top = vtkStructuredGrid::SafeDownCast(filter->GetOutputDataObject(1));
     LACUNA_CHECK(IsClosed(solid));
     const auto matrix = lacuna::FieldData::GetMatrix(
-      lacuna::FieldData::Get(top, vtkLacunaDefectModel::PressToPatientName, 16, 1), 0);
+      lacuna::FieldData::Get(top, lacuna::Coordinates::PressToPatientName, 16, 1), 0);
     LACUNA_CHECK_NEAR(matrix.Determinant3(), 1, 1e-12);
     const Vec3 towardsMill = matrix.Vector({ 0, 0, 1 });
     LACUNA_CHECK_NEAR(lacuna::Dot(towardsMill, geometry.View), -1, 1e-12);

@@ -2,7 +2,6 @@
 #include "TestMillingMould.h"
 #include "lacunaCheck.h"
 #include "lacunaCoordinates.h"
-#include "lacunaMirrored.h"
 #include "vtkDoubleArray.h"
 #include "vtkImageData.h"
 #include "vtkLacunaGCodeWriter.h"
@@ -22,15 +21,15 @@ namespace
 void TestMirrored(const std::string& file)
 {
   const auto mould = Mould();
-  lacuna::Mirrored::Mark(mould, { 1, 2, 3 }, { 1, 0, 0 });
+  lacuna::Coordinates::MarkMirrored(mould, { 1, 2, 3 }, { 1, 0, 0 });
   vtkNew<vtkLacunaMillingToolPath> filter;
   filter->SetInputData(mould);
   filter->SetOverrun(4);
   auto messages = lacunaCheck::Watch(filter);
   filter->Update();
   LACUNA_CHECK_CONTAINS(messages->Warnings, "mirror image");
-  LACUNA_CHECK(lacuna::Mirrored::IsMarked(filter->GetOutput()));
-  LACUNA_CHECK(lacuna::Mirrored::IsMarked(filter->GetOutputDataObject(1)));
+  LACUNA_CHECK(lacuna::Coordinates::IsMirrored(filter->GetOutput()));
+  LACUNA_CHECK(lacuna::Coordinates::IsMirrored(filter->GetOutputDataObject(1)));
   vtkNew<vtkLacunaGCodeWriter> writer;
   writer->SetInputConnection(filter->GetOutputPort());
   writer->SetFileName(file.c_str());

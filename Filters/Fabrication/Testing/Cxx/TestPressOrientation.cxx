@@ -2,7 +2,6 @@
 #include "TestSolids.h"
 #include "lacunaCheck.h"
 #include "lacunaCoordinates.h"
-#include "lacunaMirrored.h"
 #include "lacunaProvenance.h"
 #include "vtkFieldData.h"
 #include "vtkInformation.h"
@@ -41,7 +40,7 @@ double GetField(vtkDataObject* data, const char* name, int component = 0)
 Matrix4 GetPressToPatient(vtkDataObject* data)
 {
   return lacuna::FieldData::GetMatrix(
-    lacuna::FieldData::Get(data, vtkLacunaPressOrientation::PressToPatientName, 16, 1), 0);
+    lacuna::FieldData::Get(data, lacuna::Coordinates::PressToPatientName, 16, 1), 0);
 }
 
 vtkSmartPointer<vtkLacunaPressOrientation> MakeFilter(vtkImageData* map)
@@ -438,7 +437,7 @@ void TestErrors()
     { geometry.Origin, -1.0 * geometry.Right, geometry.Down, geometry.View, { 0.5, 0.75 } });
   refuses(mirrored, "mirror", nothing);
   auto marked = FilledMap(geometry);
-  lacuna::Mirrored::Mark(marked, { 1, 2, 3 }, { 1, 0, 0 });
+  lacuna::Coordinates::MarkMirrored(marked, { 1, 2, 3 }, { 1, 0, 0 });
   refuses(marked, "mirror image (field data Mirrored)", nothing);
   const auto map = FilledMap(geometry);
   using Filter = vtkLacunaPressOrientation;

@@ -4,7 +4,6 @@
 #include "lacunaCheck.h"
 #include "lacunaCoordinates.h"
 #include "lacunaFieldData.h"
-#include "lacunaMirrored.h"
 #include "lacunaPlanarCurves.h"
 #include "vtkDataArray.h"
 #include "vtkLacunaPressOrientation.h"
@@ -32,7 +31,7 @@ double GetField(vtkDataObject* data, const char* name)
 Matrix4 GetPressToPatient(vtkDataObject* data)
 {
   return lacuna::FieldData::GetMatrix(
-    lacuna::FieldData::Get(data, vtkLacunaPressOrientation::PressToPatientName, 16, 1), 0);
+    lacuna::FieldData::Get(data, lacuna::Coordinates::PressToPatientName, 16, 1), 0);
 }
 
 // mm from the ellipsoid, outwards; exact near it.
@@ -206,7 +205,7 @@ void TestRefusals()
     LACUNA_CHECK(press->GetOutput()->GetNumberOfPoints() == 0);
   };
   auto cap = MakeCap(30);
-  lacuna::Mirrored::Mark(cap, { 0, 0, 0 }, { 1, 0, 0 });
+  lacuna::Coordinates::MarkMirrored(cap, { 0, 0, 0 }, { 1, 0, 0 });
   refuses(cap, "mirror image");
   cap = MakeCap(30);
   cap->GetCellData()->GetArray(0)->SetName("Other");

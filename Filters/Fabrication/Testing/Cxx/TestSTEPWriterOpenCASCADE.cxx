@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // OpenCASCADE reads the files back, in another program than the one that wrote them.
 #include "lacunaCheck.h"
+#include "lacunaCoordinates.h"
 #include "lacunaMeshShapes.h"
-#include "lacunaMirrored.h"
 #include "vtkCellArray.h"
 #include "vtkErrorCode.h"
 #include "vtkLacunaSTEPWriter.h"
@@ -223,7 +223,7 @@ void CheckRefusals(const std::string& folder)
   open.Triangles.pop_back();
   CheckRefused(MakeSurface(open), path, "open: 3 edges");
   const auto mirrored = MakeSurface(box);
-  lacuna::Mirrored::Mark(mirrored, { 0, 0, 0 }, { 1, 0, 0 });
+  lacuna::Coordinates::MarkMirrored(mirrored, { 0, 0, 0 }, { 1, 0, 0 });
   CheckRefused(mirrored, path, "mirror image of the patient");
   const auto lines = MakeSurface(box);
   vtkNew<vtkCellArray> line;

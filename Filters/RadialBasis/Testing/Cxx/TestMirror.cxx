@@ -2,8 +2,8 @@
 // Mirror as a pipeline sees it: arrays, marks, pieces, errors.
 #include "RBFTestMaps.h"
 #include "lacunaCheck.h"
+#include "lacunaCoordinates.h"
 #include "lacunaFieldData.h"
-#include "lacunaMirrored.h"
 #include "lacunaProvenance.h"
 #include "vtkCallbackCommand.h"
 #include "vtkFieldData.h"
@@ -97,15 +97,15 @@ void TestVolume()
   LACUNA_CHECK(mirrored && std::string(mirrored->GetName()) == "MirroredCT");
   LACUNA_CHECK(mirrored && mirrored->GetDataType() == VTK_SHORT);
   LACUNA_CHECK(points->GetArray("vtkValidPointMask") && points->GetArray("Asymmetry"));
-  LACUNA_CHECK(lacuna::Mirrored::IsMarked(output));
-  LACUNA_CHECK(!lacuna::Mirrored::IsMarked(scene.Image));
+  LACUNA_CHECK(lacuna::Coordinates::IsMirrored(output));
+  LACUNA_CHECK(!lacuna::Coordinates::IsMirrored(scene.Image));
   LACUNA_CHECK(lacuna::Provenance::Get(output).size() == 1);
   lacuna::Vec3 normal{ 0, 0, 0 };
   lacuna::Vec3 origin{ 0, 0, 0 };
   for (int a = 0; a < 3; ++a)
   {
-    normal[a] = Field(output, lacuna::Mirrored::NormalName, a);
-    origin[a] = Field(output, lacuna::Mirrored::OriginName, a);
+    normal[a] = Field(output, lacuna::Coordinates::MirrorNormalName, a);
+    origin[a] = Field(output, lacuna::Coordinates::MirrorOriginName, a);
   }
   LACUNA_CHECK_NEAR(Norm(Cross(normal, scene.Normal)) * 180 / vtkMath::Pi(), 0, 0.05);
   LACUNA_CHECK(Dot(normal, scene.Normal) > 0); // the largest component is positive
@@ -130,7 +130,8 @@ void TestVolume()
   const lacuna::Vec3 longer = -3 * scene.Normal;
   mirror->SetNormal(longer[0], longer[1], longer[2]);
   mirror->Update();
-  LACUNA_CHECK_NEAR(Field(output, lacuna::Mirrored::NormalName, 1), scene.Normal[1], 1e-15);
+  LACUNA_CHECK_NEAR(
+    Field(output, lacuna::Coordinates::MirrorNormalName, 1), scene.Normal[1], 1e-15);
   LACUNA_CHECK(!output->GetFieldData()->GetArray("SymmetryAmbiguity"));
   vtkNew<vtkImageData> whole;
   whole->DeepCopy(output);
@@ -163,7 +164,7 @@ void TestDepthMap()
   vtkDataArray* depth = contract.GetDepth();
   vtkDataArray* asymmetry = output->GetPointData()->GetArray("Asymmetry");
   LACUNA_CHECK(output->GetPointData()->GetArray("Normals"));
-  LACUNA_CHECK(lacuna::Mirrored::IsMarked(output));
+  LACUNA_CHECK(lacuna::Coordinates::IsMirrored(output));
   int seen = 0;
   for (vtkIdType i = 0; i < depth->GetNumberOfTuples(); ++i)
   {

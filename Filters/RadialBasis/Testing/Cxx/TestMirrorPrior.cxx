@@ -3,7 +3,7 @@
 // surface's own mirror image as prior: what comes out is known, and how wrong it is.
 #include "RBFTestMaps.h"
 #include "lacunaCheck.h"
-#include "lacunaMirrored.h"
+#include "lacunaCoordinates.h"
 #include "vtkFieldData.h"
 #include "vtkLacunaMirror.h"
 #include "vtkLacunaRBFHoleFiller.h"
@@ -99,7 +99,7 @@ public:
     LACUNA_CHECK_THAT(messages->Errors.empty(), messages->Errors);
     LACUNA_CHECK_THAT(messages->Warnings.empty(), messages->Warnings);
     vtkImageData* output = this->Filler->GetOutput();
-    LACUNA_CHECK(!lacuna::Mirrored::IsMarked(output)); // it is the patient, only shaped
+    LACUNA_CHECK(!lacuna::Coordinates::IsMirrored(output)); // it is the patient, only shaped
     vtkDataArray* depth = output->GetPointData()->GetArray("Depth");
     vtkDataArray* filled = output->GetPointData()->GetArray("FilledMask");
     Errors errors;
@@ -170,8 +170,8 @@ int TestMirrorPrior(int, char*[])
   for (int a = 0; a < 3; ++a)
   {
     vtkFieldData* fields = mirror->GetOutput()->GetFieldData();
-    foundNormal[a] = fields->GetArray(lacuna::Mirrored::NormalName)->GetComponent(0, a);
-    foundOrigin[a] = fields->GetArray(lacuna::Mirrored::OriginName)->GetComponent(0, a);
+    foundNormal[a] = fields->GetArray(lacuna::Coordinates::MirrorNormalName)->GetComponent(0, a);
+    foundOrigin[a] = fields->GetArray(lacuna::Coordinates::MirrorOriginName)->GetComponent(0, a);
   }
   const double away = std::abs(Dot(at - foundOrigin, foundNormal));
   const double turned = Norm(Cross(foundNormal, normal));

@@ -8,7 +8,7 @@
 #include "NrrdFile.h"
 #include "lacunaExecution.h"
 #include "lacunaPixelSource.h"
-#include "lacunaVolumeGrid.h"
+#include "lacunaVolumeBox.h"
 
 #include <gtest/gtest.h>
 
@@ -69,8 +69,8 @@ inline void ExpectPlace(
 /// The value of the file's voxel (column, row, slice) is in the grid where the file has it.
 inline void ExpectVoxelsInPlace(const lacuna::VolumeFile& file)
 {
-  const lacuna::VolumeGrid grid =
-    lacuna::FindVolumeGrid(file.IndexToPatient, { Columns, Rows, Slices });
+  const lacuna::VolumeBox grid =
+    lacuna::FindVolumeBox(file.IndexToPatient, { Columns, Rows, Slices });
   EXPECT_NEAR(lacuna::Dot(lacuna::Cross(grid.Axes[0], grid.Axes[1]), grid.Axes[2]), 1, 1e-12);
   const auto pixels = lacuna::PixelSource::Open(file.Slices);
   std::vector<std::int16_t> voxels(Columns * Rows * Slices);
