@@ -269,7 +269,7 @@ private:
   void MarkDefect(lacuna::AlgorithmExecution& execution, vtkImageData* map,
     const lacuna::Ports& ports, lacuna::MarkedMap& marked, lacuna::ParameterText& where);
 
-  int Kernel = static_cast<int>(lacuna::RadialKernel::ThinPlate);
+  int Kernel = 0; // ThinPlate
   double KernelLength = 0;
   int Trend = NoTrend;
   vtkSmartPointer<vtkImplicitFunction> DefectRegion;

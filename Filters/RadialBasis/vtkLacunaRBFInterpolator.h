@@ -159,7 +159,7 @@ private:
 
   std::string ScalarArray;
   std::string ErrorArray;
-  int Kernel = static_cast<int>(lacuna::RadialKernel::ThinPlate);
+  int Kernel = 0; // ThinPlate
   double KernelLength = 0;
   double Smoothing = 0;
   double Accuracy = 1e-4;
