@@ -12,7 +12,8 @@ Production sources are the *.h and *.cxx of git that are in no folder Testing an
 lines, lines of code those that are neither blank nor only comment.
 
 An includer is a production source that names the header in an #include, except the header's own source
-(lacunaFan.cxx for lacunaFan.h). Tests do not count. A public header of a filter has no includer, and is
+(lacunaFan.cxx for lacunaFan.h). Tests do not count; the next row is those headers that a test includes, too, or whose
+class is one of VTK or Qt. A public header of a filter has no includer, and is
 not counted as one with one.
 
 A function is a block with a name and "(" before it, in a namespace or class. Its lines are those from its
@@ -84,6 +85,8 @@ for path, text in sources.items():
         if os.path.splitext(os.path.basename(path))[0] != name[:-2]:
             includers[name].append(path)
 lone = {path: includers[os.path.basename(path)][0] for path in headers if len(includers[os.path.basename(path)]) == 1}
+tests = "\n".join(open(path, encoding="utf-8").read() for path in listed if "Testing" in path.split("/") and os.path.exists(path))
+reasons = [path for path in lone if f'"{os.path.basename(path)}"' in tests or re.match("vtk|pq", os.path.basename(path))]
 found = [(lines, path, first, name) for path, text in sources.items() for name, first, lines in functions(text)]
 found.sort(key=lambda row: (-row[0], row[1:]))
 long = [row for row in found if row[0] > LONGEST]
@@ -115,6 +118,7 @@ else:
           f"| their lines | {sum(text.count(chr(10)) for text in sources.values())} |",
           f"| of them code | {code} |",
           f"| headers with one includer | {len(lone)} of {len(headers)} |",
+          f"| of these with a test of their own, or a class of VTK or Qt | {len(reasons)} |",
           f"| longest function | {found[0][0]} lines, `{found[0][3]}` |",
           f"| functions of more than {LONGEST} lines | {len(long)} of {len(found)} |",
           f"| `vtkLacuna*.h` without a vtkObject | {len(plain)} of {len(named)} |",
