@@ -16,6 +16,14 @@ filler = lacuna.vtkLacunaRBFHoleFiller()
 filler.SetInputConnection(caster.GetOutputPort())
 filler.SetDefectRegion(ball)
 filler.SetNodeSpacing(3)
+filler.SetKernel(lacuna.choices(filler, "Kernel")["ThinPlate"])
+assert lacuna.choices(filler, "Trend") == {"None": 0, "Ellipsoid": 1}
+for wrong, error in (("Kernels", KeyError), ("KernelLength", ValueError), ("DefectArray", ValueError)):
+    try:
+        lacuna.choices(filler, wrong)
+        raise AssertionError(wrong)
+    except error as e:
+        assert wrong in str(e) and "vtkLacunaRBFHoleFiller" in str(e), e
 filler.Update()
 
 points = filler.GetOutput().GetPointData()

@@ -5,6 +5,7 @@ import re
 from xml.etree import ElementTree
 
 import lacuna
+from lacuna.classes import properties
 from paraview import servermanager
 from paraview.simple import *
 
@@ -127,15 +128,9 @@ def check_panel(name, proxy):
             assert domains, (name, p.get("name"), "has no domain")
 
 
-def declared(class_name):
-    """What PrintSelf says of each property: name -> (value, what it may be)."""
-    lines = re.findall(r"^  (\w+): (.*?)(?: \((.*)\))?$", str(getattr(lacuna, class_name)()), re.M)
-    return {name: (value, allowed) for name, value, allowed in lines}
-
-
 def check_declared(name, proxy):
     """The choices, ranges and units of the XML are those that errors name."""
-    table = declared("vtkLacuna" + name)
+    table = properties(getattr(lacuna, "vtkLacuna" + name)())
     faults = []
     for p in settings(proxy):
         allowed = table.get(p.get("name"), ("", None))[1]

@@ -29,7 +29,7 @@ filler = RBFHoleFiller(Input=source)
 direct = lacuna.vtkLacunaRBFHoleFiller()
 for name in ("SupportMargin", "SupportStepMargin", "NodeSpacing", "Smoothing", "CutoffWavelength", "OutputMargin"):
     assert filler.GetPropertyValue(name) == getattr(direct, "Get" + name)(), name
-assert filler.Kernel == "ThinPlate" and direct.GetKernel() == direct.ThinPlate
+assert filler.Kernel == "ThinPlate" and direct.GetKernel() == lacuna.choices(direct, "Kernel")["ThinPlate"]
 assert direct.GetDefectRegion() is None
 assert type(filler.DefectRegion).__name__ == "None"
 for name in ("DefectArray", "SupportArray"):

@@ -63,7 +63,7 @@ assert counts[3] > 0 and any("steeper than 65 degrees" in w for w in warnings)
 assert largest < 1.5 and rms < 0.7
 
 # With the settings of the user guide for large holes it is the margin to steps that keeps the brow out.
-filler.SetKernel(filler.Cubic)
+filler.SetKernel(lacuna.choices(filler, "Kernel")["Cubic"])
 filler.SetSupportMargin(20)
 filler.SetNodeSpacing(2)
 filler.SetCutoffWavelength(10)

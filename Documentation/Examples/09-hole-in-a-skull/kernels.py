@@ -52,7 +52,7 @@ def fill(depths, settings):
     filler.SetSupportMargin(20)
     filler.SetNodeSpacing(2)
     for name, value in settings.items():
-        getattr(filler, "Set" + name)(getattr(filler, value) if isinstance(value, str) else value)
+        getattr(filler, "Set" + name)(lacuna.choices(filler, name)[value] if isinstance(value, str) else value)
     filler.Update()
     fitted = vtk_to_numpy(filler.GetOutput().GetPointData().GetArray("Fitted")).reshape(121, 121)
     return fitted - dome
