@@ -112,7 +112,7 @@ public:
   ///@}
 
   ///@{
-  /** Of Gaussian and multiquadric, mm, >= 0; 0: 1.25 times the distance of nodes. Default 0. */
+  /** Of kernels that have one, mm, >= 0; 0: 1.25 times the distance of nodes, of Wendland 5 times. Default 0. */
   vtkSetMacro(KernelLength, double);
   vtkGetMacro(KernelLength, double);
   ///@}

@@ -78,8 +78,8 @@ public:
 
   ///@{
   /**
-   * Length of the Gaussian and the multiquadric, in the unit of the points, >= 0. Default 0: 1.25
-   * times the mean distance of neighbours.
+   * Length of kernels that have one, in the unit of the points, >= 0. Default 0: 1.25 times the mean distance of
+   * neighbours, of Wendland 5 times.
    */
   vtkSetMacro(KernelLength, double);
   vtkGetMacro(KernelLength, double);

@@ -5,7 +5,7 @@ import re
 from xml.etree import ElementTree
 
 import lacuna
-from lacuna.classes import properties
+from lacuna import classes
 from paraview import servermanager
 from paraview.simple import *
 
@@ -130,7 +130,7 @@ def check_panel(name, proxy):
 
 def check_declared(name, proxy):
     """The choices, ranges and units of the XML are those that errors name."""
-    table = properties(getattr(lacuna, "vtkLacuna" + name)())
+    table = classes.properties(getattr(lacuna, "vtkLacuna" + name)())
     faults = []
     for p in settings(proxy):
         allowed = table.get(p.get("name"), ("", None))[1]

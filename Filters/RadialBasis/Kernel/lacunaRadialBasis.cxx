@@ -21,7 +21,6 @@ namespace
 // Relative to the extent of the nodes: flatter than this is a line (plane).
 constexpr double FlatnessLimit = 1e-9;
 // In mean distances of neighbours: smooth between nodes, and the equations are still well-conditioned.
-constexpr double AutoShape = 1.25;
 
 template <int Dimension>
 std::string ToText(const std::array<double, Dimension>& point)
@@ -192,7 +191,7 @@ RadialFrame<Dimension> FindRadialFrame(
       volume *= std::max(high[c] - low[c], cell);
     }
     const double distance = std::pow(volume / static_cast<double>(nodes.size()), 1.0 / Dimension);
-    frame.Scale = 1 / (shape > 0 ? shape : AutoShape * distance);
+    frame.Scale = 1 / (shape > 0 ? shape : GetRadialLength(kernel) * distance);
     frame.Length = extent * frame.Scale;
   }
   if (!std::isfinite(extent) || !std::isfinite(frame.Scale) || !std::isfinite(frame.Length) ||

@@ -66,7 +66,7 @@ struct AveragedNodes
 };
 
 /// The frame for a kernel: the unit cube, or for kernels that have a length its multiple. shape is
-/// that length, in the unit of the nodes; 0 chooses 1.25 times the mean distance of neighbours. Throws
+/// that length, in the unit of the nodes; 0 chooses GetRadialLength. Throws
 /// std::invalid_argument when the extent of the nodes is out of range or shape is bad.
 template <int Dimension>
 RadialFrame<Dimension> FindRadialFrame(
@@ -102,8 +102,7 @@ struct RadialBasisOptions
   double Smoothing = 0;
   /// Limit for the dense matrix, (n + monomials)^2 x 8 bytes.
   std::uint64_t MaximumBytes = std::uint64_t(1) << 32;
-  /// Length of the Gaussian and multiquadric, in the unit of the nodes; 0: 1.25 times the
-  /// mean distance of neighbours.
+  /// Length of kernels that have one, in the unit of the nodes; 0: GetRadialLength times the mean distance of neighbours.
   double Shape = 0;
   /// 0: all is exact up to round-off, and Solver Fast is refused. Above 0, relative to the range of
   /// the values: a fast solution misses no value by more, and fast sums are wrong by no more.

@@ -18,7 +18,8 @@ namespace
 //               conditions of a linear polynomial annul;
 //   Energy      the factor C of the smoothness energy C sum_ij a_i a_j phi(|x_i - x_j|), in 2-D;
 //   Degree      the degree of the polynomial part;
-//   Shaped      whether phi has a length of its own; then that is the unit of r, and Power is 0;
+//   Length      0, or of a phi that has a length of its own, which is the unit of r then, what is taken when none is
+//               given, in mean distances of neighbours; Power is 0;
 //   Phi(r2)     phi as a function of the squared distance;
 //   Slope(r2)   phi'(r)/r, so that the gradient of phi(|x|) is Slope(|x|^2) x; finite at r2 = 0.
 // The sign of phi is such that the energy is positive. A pack is a vector type of the compiler
@@ -120,7 +121,7 @@ struct ThinPlateKernel
 {
   static constexpr int Power = 2;
   static constexpr int Degree = 1;
-  static constexpr bool Shaped = false;
+  static constexpr double Length = 0;
   static constexpr double Energy = 25.132741228718345; // 8 pi
 
   template <int Width, class Real = typename Packs<Width>::Real>
@@ -140,7 +141,7 @@ struct LinearKernel
 {
   static constexpr int Power = 1;
   static constexpr int Degree = 1;
-  static constexpr bool Shaped = false;
+  static constexpr double Length = 0;
   static constexpr double Energy = 1;
 
   template <int Width, class Real = typename Packs<Width>::Real>
@@ -161,7 +162,7 @@ struct CubicKernel
 {
   static constexpr int Power = 3;
   static constexpr int Degree = 1;
-  static constexpr bool Shaped = false;
+  static constexpr double Length = 0;
   static constexpr double Energy = 1;
 
   template <int Width, class Real = typename Packs<Width>::Real>
@@ -181,7 +182,7 @@ struct TriharmonicKernel
 {
   static constexpr int Power = 4;
   static constexpr int Degree = 2;
-  static constexpr bool Shaped = false;
+  static constexpr double Length = 0;
   static constexpr double Energy = 1;
 
   template <int Width, class Real = typename Packs<Width>::Real>
@@ -201,7 +202,7 @@ struct GaussianKernel
 {
   static constexpr int Power = 0;
   static constexpr int Degree = 1;
-  static constexpr bool Shaped = true;
+  static constexpr double Length = 1.25;
   static constexpr double Energy = 1;
 
   template <int Width, class Real = typename Packs<Width>::Real>
@@ -221,7 +222,7 @@ struct MultiquadricKernel
 {
   static constexpr int Power = 0;
   static constexpr int Degree = 1;
-  static constexpr bool Shaped = true;
+  static constexpr double Length = 1.25;
   static constexpr double Energy = 1;
 
   template <int Width, class Real = typename Packs<Width>::Real>
@@ -241,7 +242,7 @@ struct WendlandKernel
 {
   static constexpr int Power = 0;
   static constexpr int Degree = 1;
-  static constexpr bool Shaped = true;
+  static constexpr double Length = 5;
   static constexpr double Energy = 1;
 
   template <int Width, class Real = typename Packs<Width>::Real>
@@ -451,8 +452,8 @@ int GetRadialDegree(RadialKernel kernel)
   return Visit(kernel, [](auto k) { return decltype(k)::Degree; });
 }
 
-bool IsRadialShaped(RadialKernel kernel)
+double GetRadialLength(RadialKernel kernel)
 {
-  return Visit(kernel, [](auto k) { return decltype(k)::Shaped; });
+  return Visit(kernel, [](auto k) { return decltype(k)::Length; });
 }
 }

@@ -80,7 +80,11 @@ int GetRadialPower(RadialKernel kernel);
 double GetRadialEnergyFactor(RadialKernel kernel);
 /// Degree of the polynomial part: 2 for the triharmonic, else 1.
 int GetRadialDegree(RadialKernel kernel);
-/// Whether the kernel has a length of its own.
-bool IsRadialShaped(RadialKernel kernel);
+/// The length that is taken when none is given, in mean distances of neighbours; 0: the kernel has none.
+double GetRadialLength(RadialKernel kernel);
+inline bool IsRadialShaped(RadialKernel kernel)
+{
+  return GetRadialLength(kernel) > 0;
+}
 }
 #endif
