@@ -67,6 +67,9 @@ struct SliceImages
   SliceImages(
     vtkImageData* stack, const SliceSelection& selection, vtkLacunaSliceStream* stream = nullptr);
 
+  /// Index along z, of the stack's extent, of each of Slices.
+  const std::vector<int>& GetLayers() const { return this->Layers; }
+
   /// A warning when these are the slices of a preview only; else empty.
   std::string DescribePreview() const;
 

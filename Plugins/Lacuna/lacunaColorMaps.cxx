@@ -11,6 +11,8 @@ const bool Added = vtkSMSettings::GetInstance()->AddCollectionFromString(
   R"json({ "array_lookup_tables": {
   "Intensity": { "Title": "Grey level", "PVLookupTable": {
     "ColorSpace": "RGB", "RGBPoints": [0, 0, 0, 0, 1, 1, 1, 1], "NanColor": [1, 0, 0] } },
+  "BoneEcho": { "Title": "Bone (surface at 0.5)", "PVLookupTable": {
+    "ColorSpace": "RGB", "RGBPoints": [0, 0, 0, 0, 1, 0.93, 0.89, 0.8] } },
   "HounsfieldUnits": { "Title": "Hounsfield units (HU)", "PVLookupTable": {
     "ColorSpace": "RGB", "RGBPoints": [0, 0, 0, 0, 1, 1, 1, 1] } },
   "Color": { "Title": "Brightness", "PVLookupTable": {

@@ -71,6 +71,8 @@ constexpr Entry Jobs[] = {
     "The hole that the 3-D view looks into becomes an IGES surface. Select the CT first." },
   { "&Sweep to Surface", "sweep_to_surface",
     "Tracked slices become a volume and a surface. Select the sweep first." },
+  { "Sweep to &Bone", "sweep_to_bone",
+    "The surface of the bone in tracked slices: bright, with a shadow. Select the sweep first." },
   { "&Live Layout", "live_layout",
     "A tracker and a scanner, live: the scanner's picture, and slices and surface as they grow." },
 };
@@ -89,6 +91,7 @@ constexpr Entry Filters[] = {
   { "How late frames are", "LacunaTemporalCalibration", nullptr },
   { "Is the tracker right?", "LacunaTrackerSelfTest", nullptr },
   { "Slices at one moment of the heart or breath", "LacunaGateSlices", nullptr },
+  { "Bone in slices", "LacunaBoneEcho", nullptr },
   { "Less speckle", "LacunaSpeckleFilter", nullptr },
   { "Contrast to speckle", "LacunaContrastToSpeckle", nullptr },
   { "Slices as pictures in space", "LacunaSlicePlanes", nullptr },

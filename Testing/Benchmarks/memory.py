@@ -207,6 +207,7 @@ CASES = {
     "Outline Reader": outlines,
     "Assemble Tracked Slices": assembled,
     "Gate Slices": lambda n: GateSlices(Input=sweep(n), SpeedLimit=1e6),
+    "Bone Echo": lambda n: BoneEcho(Input=sweep(n)),
     "Scan Region": lambda n: ScanRegion(Input=floor(n, 25)),
     "Probe Calibration": lambda n: ProbeCalibration(Input=floor(n, 25), Method="SingleWall", PixelSpacing=scans.SPACING),
     "Temporal Calibration": lambda n: TemporalCalibration(Input=floor(n, 0)),

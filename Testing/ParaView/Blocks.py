@@ -38,6 +38,7 @@ CASES = (
     (sweep(10), sweep(14), (
         lambda slices: SweptVolume(Input=slices),
         lambda slices: SliceRayCaster(Input=slices),
+        lambda slices: BoneEcho(Input=slices),
         lambda slices: GateSlices(Input=slices, SpeedLimit=1e6))),
     (Sphere(Radius=4), Sphere(Radius=5), (
         lambda points: RBFInterpolator(Input=points, OutputSpacing=[1, 1, 1], ScalarArray="Normals"),)),

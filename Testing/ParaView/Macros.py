@@ -15,7 +15,7 @@ from lacuna_test import output
 from paraview.simple import *
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
-SWEEP, CT, IMPLANT = "sweep_to_surface", "ct_to_iges", "ct_to_implant"
+SWEEP, BONE, CT, IMPLANT = "sweep_to_surface", "sweep_to_bone", "ct_to_iges", "ct_to_implant"
 home = os.path.abspath(output("Macros"))
 shutil.rmtree(home, ignore_errors=True)
 os.makedirs(home)
@@ -70,7 +70,10 @@ uncalibrated = ProgrammableFilter(registrationName="No pose", Input=sweep, Scrip
 output.ShallowCopy(inputs[0].VTKObject)
 output.GetFieldData().RemoveArray("ImageToReference")
 """)
-refused(SWEEP, "'No pose' is not calibrated")
+for job in SWEEP, BONE:
+    refused(job, "'No pose' is not calibrated")
+SetActiveSource(sweep)
+refused(BONE, "no bone was found in 'My sweep'")  # organs have no shadow
 intact = SkullPhantom(registrationName="Intact", DefectRadius=0, Spacing=[2, 2, 3])
 refused(CT, "no hole is seen in 'Intact': turn the 3-D view")
 refused(IMPLANT, "no hole")

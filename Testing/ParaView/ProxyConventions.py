@@ -21,7 +21,7 @@ WITHOUT_UNIT = {
     "InsideBounds", "OutsideBounds", "PixelAspect", "SpeckleLevel", "PresentFraction", "TissueFraction",
     "OutlierFraction", "ObjectOpacity", "Accuracy", "IsoValue", "IsoValues", "OutsideValue", "OutlierLimit",
     "Smoothing", "TimestepValues", "FootprintScale", "PaddingValue", "NoiseLevel", "TrueIsoValue", "Envelope",
-    "OutputSpacing", "KernelSize", "Dilation", "StructureColors"}
+    "OutputSpacing", "KernelSize", "Dilation", "StructureColors", "MinimumConfidence"}
 # as lacuna::ValueRange describes it
 RANGE = re.compile(r"(?:0 \((?P<zero>.*)\) or )?(?:a finite number|at most (?P<high>\S+)|from (?P<low>\S+) to (?P<high2>\S+)|"
                    r"above (?P<low2>\S+)(?: and at most (?P<high3>\S+))?|(?P<low3>\S+)(?P<unit3> .*)? or more)(?P<unit> .*)?")

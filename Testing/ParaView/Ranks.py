@@ -28,7 +28,7 @@ from vtkmodules.vtkIOXML import vtkXMLGenericDataObjectReader, vtkXMLTableReader
 
 # How ranks divide what each kind makes, in ParaView's words without Lacuna; a new one is listed here after a thought.
 # Parts of an image, which overlap in nothing but shared faces
-IMAGES = {"AssembleTrackedSlices", "BSplineIsoRayCaster", "CTSeriesReader", "DepthMapShader", "GateSlices", "IncompleteShape",
+IMAGES = {"AssembleTrackedSlices", "BSplineIsoRayCaster", "BoneEcho", "CTSeriesReader", "DepthMapShader", "GateSlices", "IncompleteShape",
           "Mirror", "OccludedAngle", "PhantomSweep", "ProbeCalibration", "RBFHoleFiller", "RBFImageWarp", "RBFInterpolator",
           "SkullBone", "SkullPhantom", "SkullResection", "SliceRayCaster", "SpeckleFilter", "SweptVolume", "TrackedSliceReader", "VolumeReader"}
 # but of these all ranks have the whole

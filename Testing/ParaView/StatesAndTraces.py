@@ -24,7 +24,7 @@ from vtkmodules.util.numpy_support import vtk_to_numpy
 
 # (kind, port) of images that cannot be turned: stacks, whose poses tell where the slices are, the map of errors over such an image, and
 # what is made along the axes. Every other image is turned in one of the pipelines.
-ALONG_AXES = {*((f"Lacuna{kind}", 0) for kind in ("AssembleTrackedSlices", "GateSlices", "PhantomSweep", "PolhemusVideoSource",
+ALONG_AXES = {*((f"Lacuna{kind}", 0) for kind in ("AssembleTrackedSlices", "BoneEcho", "GateSlices", "PhantomSweep", "PolhemusVideoSource",
                                                    "ProbeCalibration", "TrackedSliceReader")),
               ("LacunaPolhemusVideoSource", 1), ("LacunaProbeCalibration", 3), ("LacunaRBFSurface", 1),
               *((f"Lacuna{kind}", 0) for kind in ("IncompleteShape", "RBFInterpolator", "SkullPhantom"))}

@@ -23,6 +23,7 @@ from vtkmodules.vtkRenderingCore import vtkWindowToImageFilter
 BAD = {  # a property of each proxy, and a value that is an error
     "LacunaAssembleTrackedSlices": ("PixelSpacing", -1),
     "LacunaBSplineIsoRayCaster": ("ViewUp", [0, 0, 0]),
+    "LacunaBoneEcho": ("Thickness", -1),
     "LacunaCTSeriesReader": ("FileName", "none"),
     "LacunaContrastToSpeckle": ("InsideBounds", [1, 2, 1, 2, 1e9, 2e9]),
     "LacunaDefectModel": ("Margin", -1),

@@ -99,6 +99,20 @@ def test(window):
     print(f"sweep to a surface: {clicks.number} clicks", flush=True)
     assert clicks.number <= 12
 
+    # From the same sweep to the bone in it
+    if real:
+        clicks.number -= 2
+        HideAll(view)
+        SetActiveSource(source)
+        clicks.menu("Lacuna/Sweep to Bone")
+        window.take_messages()
+        bone = GetActiveSource()
+        assert FindSource("Bone surface of SpinePhantomFreehand.igs.mha") == bone and {each.Input for each in shown(view)} == {bone, source}
+        window.save(os.path.join(folder, "bone.png"))
+        window.compare("AtHomeSpine", likeness=0.9)
+        print(f"sweep to bone: {clicks.number} clicks", flush=True)
+        assert clicks.number <= 12
+
     # Filters by what they are for; those that do not fit the selection cannot be chosen
     filler = "Lacuna/Skull and implant/Fill a hole of a depth map: RBF Hole Filler"
     assert not window.has_menu("Lacuna/Making it/Milling path: Milling Tool Path")

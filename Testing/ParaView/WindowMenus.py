@@ -99,6 +99,7 @@ def test(window):
     make("Filters", "Slice Planes", sweep)
     recovers("Stride/LineEdit0", 0, 1, ERROR)
     make("Filters", "Gate Slices", sweep, SpeedLimit=200)
+    make("Filters", "Bone Echo", sweep)
     for text in ("Speckle Filter", "Slice Ray Caster"):
         make("Filters", text, sweep)
     window.compare("MenusSweep")

@@ -98,6 +98,7 @@ output.RowData.append(time, "Time")
 output.RowData.append((time / 1.3) % 1, "Gate")""")
     gated = GateSlices(registrationName="Gated", Input=sweep, GateTable=breath, GateType="Phase", GateRange=[0.9, 0.5])
     smooth = SpeckleFilter(registrationName="Smooth", Input=gated, Operation="Opening", KernelShape="Ellipsoid", KernelSize=[3, 3, 1])
+    BoneEcho(registrationName="Bone echo", Input=gated, MinimumConfidence=0.05, MinimumArea=0)
     SlicePlanes(registrationName="Planes", Input=smooth, ColorBy="Speed", Stride=3)
     corners = (20, 15), (60, 18), (55, 45), (40, 30), (22, 44)
     # a sweep of its own: Slice Ray Caster has all of its input on every rank

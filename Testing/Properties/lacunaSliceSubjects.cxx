@@ -9,6 +9,7 @@
 #include "vtkFieldData.h"
 #include "vtkImageData.h"
 #include "vtkLacunaAssembleTrackedSlices.h"
+#include "vtkLacunaBoneEcho.h"
 #include "vtkLacunaGateSlices.h"
 #include "vtkLacunaProbeCalibration.h"
 #include "vtkLacunaScanRegion.h"
@@ -79,6 +80,18 @@ Subject MakeSweptVolume()
   // spacings of a few micrometres would be right, and long
   subject.Prepare = [](vtkAlgorithm* algorithm) { Cast<T>(algorithm)->SetMemoryLimit(64); };
   subject.Cost = 4;
+  return subject;
+}
+
+Subject MakeBoneEcho()
+{
+  using T = vtkLacunaBoneEcho;
+  Subject subject{ "BoneEcho", NewOf<T>, MakeSlices, SliceProperties<T>() };
+  Append(subject.Properties,
+    { Real("MinimumConfidence", &T::SetMinimumConfidence, 0.01, 1),
+      Real("ShadowLength", &T::SetShadowLength, 0.5, 20),
+      Real("MaximumGap", &T::SetMaximumGap, 0, 10), Real("MinimumArea", &T::SetMinimumArea, 0, 20),
+      Real("Thickness", &T::SetThickness, 0.1, 10), Whole("FanMask", &T::SetFanMask, 0, 2) });
   return subject;
 }
 
@@ -364,6 +377,7 @@ void AddSliceSubjects(std::vector<Subject>& subjects)
     subjects.back().MayBeNaN = { "Speed", "Intensity", "RegistrationError" };
   }
   subjects.push_back(MakeSliceOutliner());
+  subjects.push_back(MakeBoneEcho());
   subjects.push_back(MakeSweptVolume());
   subjects.push_back(MakeSliceRayCaster());
   subjects.push_back(MakeProbeCalibration());

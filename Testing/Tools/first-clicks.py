@@ -26,7 +26,7 @@ SaveData("skull.vti", proxy=SkullPhantom(), DataMode="Binary")
 SaveData("sweep.igs.mha", proxy=PhantomSweep(SpeckleLevel=0.2))
 """
 OPEN, APPLY, MENU = (28, 42), (49, 462), (506, 12)
-IMPLANT, SURFACE, SAVE_SOLID = (560, 36), (560, 112), (560, 163)  # entries of the menu
+IMPLANT, SURFACE, SAVE_SOLID = (560, 36), (560, 112), (560, 188)  # entries of the menu
 FIRST_FILE, SECOND_FILE, DIALOG_OK = (515, 267), (520, 286), (930, 541)
 WINDOW, DIALOG = (0, 0, 1300, 870), (0, 0, 990, 600)
 

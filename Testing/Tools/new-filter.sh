@@ -184,10 +184,24 @@ cat >"Plugins/Lacuna/Resources/Icons/$name.svg" <<END
 </svg>
 END
 
-sed -i "0,/^  CLASSES\$/s//  CLASSES\n    $class/" "$folder/CMakeLists.txt"
-sed -i "0,/^  NO_DATA.*/s//&\n  Test$name.cxx/" "$folder/Testing/Cxx/CMakeLists.txt"
+# Puts a line into a file: before the first line that matches the pattern and sorts after it, otherwise after the last one.
+insert() { # file line pattern
+  awk -v line="$2" -v pattern="$3" '
+    { lines[NR] = $0 }
+    $0 ~ pattern { last = NR; if (!at && $0 > line) at = NR }
+    END {
+      if (!at && last) at = last + 1
+      for (i = 1; i <= NR + 1; ++i) {
+        if (i == at) print line
+        if (i <= NR) print lines[i]
+      }
+    }' "$1" >"$1.new" && cat "$1.new" >"$1"
+  rm "$1.new"
+}
+insert "$folder/CMakeLists.txt" "    $class" '^    vtkLacuna[A-Za-z0-9]+$'
+insert "$folder/Testing/Cxx/CMakeLists.txt" "  Test$name.cxx" '^  Test[A-Za-z0-9]+[.]cxx$'
 sed -i "s|^lacuna_add_proxies(Filters$module \+|&Filters/$name.xml |" Plugins/Lacuna/CMakeLists.txt
-sed -i "0,/^    <file>Icons/s//    <file>Icons\/$name.svg<\/file>\n&/" Plugins/Lacuna/Resources/lacuna.qrc
+insert Plugins/Lacuna/Resources/lacuna.qrc "    <file>Icons/$name.svg</file>" '^    <file>Icons/'
 last=$(grep -n '^    </Category>' Plugins/Lacuna/LacunaMenus.xml | sed -n '2s/:.*//p') # that of filters
 sed -i "${last}i\\      <Proxy group=\"filters\" name=\"Lacuna$name\" icon=\":/Lacuna/Icons/$name.svg\"/>" Plugins/Lacuna/LacunaMenus.xml
 if command -v clang-format-14 >/dev/null; then
@@ -198,5 +212,9 @@ for list in "$folder/CMakeLists.txt" "$folder/Testing/Cxx/CMakeLists.txt" Plugin
   grep -q "$name" "$list" || { echo "$0: $list does not name it: do it by hand" >&2; exit 1; }
 done
 git status --short
-echo "next: cmake --build build/release, then ctest --test-dir build/release -R Test$name (it fails until it is written);
-what else a filter has: ctest -R 'ProxyConventions|WindowMenus', and \"A new filter\" in Documentation/DeveloperGuide/architecture.md"
+cat <<END
+next: cmake --build build/release, then ctest --test-dir build/release -R Test$name (it fails until it is written).
+What else a filter has: "A new filter" in Documentation/DeveloperGuide/architecture.md. The lists are those that have
+another filter of its kind, for instance: git grep -l GateSlices. ctest -R 'ProxyConventions|WindowMenus|MemoryTable'
+says what is missing in most of them.
+END

@@ -15,8 +15,8 @@ JOBS = {
     "Acquire and calibrate ultrasound": (
         "Polhemus Video Source", "Phantom Sweep", "Scan Region", "Probe Calibration", "Temporal Calibration", "Tracker Self Test"),
     "From ultrasound slices to surfaces": (
-        "Tracked Slice Reader", "Assemble Tracked Slices", "Gate Slices", "Speckle Filter", "Contrast To Speckle", "Slice Planes", "Slice Outliner",
-        "Outlined Structures", "Slice Ray Caster", "Swept Volume", "Tracked Slice Writer"),
+        "Tracked Slice Reader", "Assemble Tracked Slices", "Gate Slices", "Bone Echo", "Speckle Filter", "Contrast To Speckle", "Slice Planes",
+        "Slice Outliner", "Outlined Structures", "Slice Ray Caster", "Swept Volume", "Tracked Slice Writer"),
     "See a CT": (
         "CT Series Reader", "Volume Reader", "Skull Phantom", "Skull Bone", "B-Spline Iso Ray Caster", "Depth Map Shader", "Depth Map Surface"),
     "Plan an implant": ("Skull Implant", "Skull Resection", "Mirror", "RBF Hole Filler", "Spline Loop"),

@@ -2,6 +2,7 @@
 """The main jobs in one step, on what is selected in the pipeline browser: what the menu Lacuna of ParaView calls.
 
     surface = macros.sweep_to_surface()     # tracked slices -> volume -> median -> surface
+    bone = macros.sweep_to_bone()           # tracked slices -> bone in them -> volume -> smooth surface
     filled, name = macros.ct_to_iges()      # CT -> depth map as the view looks -> filled hole -> IGES file
     made = macros.ct_to_implant()           # CT -> bone alone -> implant, coloured by the error to expect
     folder = macros.report_implant()        # a Skull Implant -> implant.stl, report.pdf and index.html
@@ -20,6 +21,8 @@ from vtkmodules.util.numpy_support import vtk_to_numpy
 
 BONE = 500  # Hounsfield units
 MEDIAN = 5  # voxels
+BONE_SPACING = 0.4  # mm: voxels of a bone's volume are no smaller
+BONE_BLUR = 0.6  # mm: standard deviation of what makes it smooth
 VOXELS = 8_000_000  # of a volume, at most
 PICTURES = 4  # slices shown beside a surface
 VEIL = 0.35  # their opacity, so that the surface is seen behind them
@@ -42,15 +45,7 @@ def sweep_to_surface(source=None):
     The level is half-way for a Phantom Sweep, else Otsu's threshold of the smoothed volume: change Isosurfaces of the result.
     Returns the Contour. Raises ValueError when the source has no calibrated tracked slices.
     """
-    source = _data_of(source, "a sweep: a Tracked Slice Reader, Phantom Sweep, Assemble Tracked Slices or Polhemus Video Source")
-    name = _name(source)
-    image = fetch(source)
-    fields = image.GetFieldData()
-    if not image.IsA("vtkImageData") or not (fields.HasArray("ImageToReference") or fields.HasArray("SliceStatus")):
-        raise ValueError(f"'{name}' holds no tracked slices; select a Tracked Slice Reader, Phantom Sweep, Assemble Tracked Slices or "
-                         "Polhemus Video Source in the pipeline browser")
-    if not fields.HasArray("ImageToReference"):
-        raise ValueError(f"'{name}' is not calibrated: where its images lie is not known. Set CalibrationFileName, or use Probe Calibration")
+    source, name, image = _sweep_of(source)
     with _made() as made, raising():
         volume = made(pv.SweptVolume(registrationName=f"Volume of {name}", Input=source, FanMask=_fan_mask(image)))
         _fit(volume)
@@ -62,9 +57,9 @@ def sweep_to_surface(source=None):
         grey = fetch(smooth).GetPointData().GetScalars().GetName()
         surface = made(pictures.contour(smooth, grey, level, registrationName=f"Surface of {name}"))
         surface.UpdatePipeline()
-        slices = image.GetDimensions()[2]
         if surface.GetDataInformation().GetNumberOfCells() == 0:
             raise ValueError(f"the volume of '{name}' has no surface at the grey level {level:.4g}")
+    slices = image.GetDimensions()[2]
     view = _view()
     window.show_slices(source, view, max(1, (slices - 1) // (PICTURES - 1))).Opacity = VEIL
     pictures.show_surface(surface, view, pictures.TISSUE)
@@ -73,6 +68,38 @@ def sweep_to_surface(source=None):
     pv.SetActiveSource(surface)
     pv.Render(view)
     print(f"Lacuna: surface at grey level {level:.4g} of {slices} slices; change Isosurfaces of '{_name(surface)}' and Apply to move it")
+    return surface
+
+
+def sweep_to_bone(source=None):
+    """The bone in a sweep (by default the active source) becomes a surface, shown with some of the slices.
+
+    Bone is what is bright and has a shadow (Bone Echo); its surface is smoothed. Returns the Contour. Raises ValueError when the source has
+    no calibrated tracked slices, or no bone is found in them.
+    """
+    source, name, image = _sweep_of(source)
+    with _made() as made, raising():
+        echo = made(pv.BoneEcho(registrationName=f"Bone of {name}", Input=source, FanMask=_fan_mask(image)))
+        echo.UpdatePipeline()
+        area = fetch(echo).GetFieldData().GetArray("BoneArea").GetValue(0)
+        volume = made(pv.SweptVolume(registrationName=f"Volume of {name}", Input=echo))
+        _fit(volume, BONE_SPACING)
+        smooth = made(pv.SpeckleFilter(registrationName=f"Smooth bone of {name}", Input=volume, Operation="Gaussian", StandardDeviation=BONE_BLUR,
+                                       KernelSize=[3, 3, 3]))
+        surface = made(pictures.contour(smooth, "Intensity", 0.5, registrationName=f"Bone surface of {name}"))
+        surface.UpdatePipeline()
+        if surface.GetDataInformation().GetNumberOfCells() == 0:
+            raise ValueError(f"no bone was found in '{name}': no echo has a shadow behind it. Use Bone Echo with a lower MinimumConfidence")
+    view = _view()
+    pv.Hide(source, view)
+    pictures.show_surface(surface, view, pictures.BONE)
+    window.look_onto_slices(source, view)
+    slices = image.GetDimensions()[2]
+    window.show_slices(source, view, max(1, slices - 1)).Opacity = VEIL  # the first and the last one
+    views.check_orientation(view)
+    pv.SetActiveSource(surface)
+    pv.Render(view)
+    print(f"Lacuna: {area / 100:.1f} cm^2 of bone in {slices} slices; MinimumConfidence and MinimumArea of '{_name(echo)}' say what is bone")
     return surface
 
 
@@ -193,6 +220,20 @@ def report_implant(source=None, folder=None):
     return folder
 
 
+def _sweep_of(source):
+    """A source of calibrated tracked slices, its name and its data."""
+    source = _data_of(source, "a sweep: a Tracked Slice Reader, Phantom Sweep, Assemble Tracked Slices or Polhemus Video Source")
+    name = _name(source)
+    image = fetch(source)
+    fields = image.GetFieldData()
+    if not image.IsA("vtkImageData") or not (fields.HasArray("ImageToReference") or fields.HasArray("SliceStatus")):
+        raise ValueError(f"'{name}' holds no tracked slices; select a Tracked Slice Reader, Phantom Sweep, Assemble Tracked Slices or "
+                         "Polhemus Video Source in the pipeline browser")
+    if not fields.HasArray("ImageToReference"):
+        raise ValueError(f"'{name}' is not calibrated: where its images lie is not known. Set CalibrationFileName, or use Probe Calibration")
+    return source, name, image
+
+
 def _data_of(source, what):
     """The source, updated, or the active one. Raises ValueError when there is none."""
     source = source or pv.GetActiveSource()
@@ -232,14 +273,14 @@ def _fan_mask(image):
     return "Automatic" if confidence and confidence.GetValue(0) >= SURE else "None"
 
 
-def _fit(volume):
-    """Voxels from the data but not too many, and a rim of nothing around the sweep, which closes the surface there."""
+def _fit(volume, least=0):
+    """Voxels from the data but not too many, of at least so many mm, and a rim of nothing around the sweep, which closes the surface there."""
     volume.UpdatePipelineInformation()
     volume.UpdatePipeline()
     image = fetch(volume)
     spacing = list(image.GetSpacing())
     growth = max(1, (image.GetNumberOfPoints() / VOXELS) ** (1 / 3))
-    volume.OutputSpacing = [growth * step for step in spacing]
+    volume.OutputSpacing = [max(least, growth * step) for step in spacing]
     rim = [MEDIAN * step for step in volume.OutputSpacing]
     bounds = image.GetBounds()
     volume.OutputBounds = [bounds[i] + (1 if i % 2 else -1) * rim[i // 2] for i in range(6)]

@@ -30,6 +30,7 @@ MARKED = (0.90, 0.35, 0.10)
 # Of a volume rendering: Hounsfield units, then colour or opacity. Soft tissue is not seen.
 BONE_COLORS = ((150, 0.75, 0.55, 0.45), (350, 0.90, 0.83, 0.70), (1200, 0.97, 0.95, 0.90), (3000, 1, 1, 1))
 BONE_OPACITIES = ((250, 0), (400, 0.6), (700, 0.95), (3000, 1))
+BONE_SURFACE = 0.5  # of Bone Echo
 DARK = 0.03  # part of the range of grey levels that is left out of slices at least, and that is left at least
 FRONT, UP = (0, 1, 0), (0, 0, 1)  # the view into the face, in patient coordinates (LPS)
 
@@ -177,10 +178,17 @@ def _show_bone(source, display, view):
 
 
 def show_slices(source, view, stride=1):
-    """Shows tracked slices with poses as grey pictures where they lie, every stride-th. What is dark is left out. Returns the display."""
+    """Shows tracked slices with poses as grey pictures where they lie, every stride-th. What is dark is left out; of those that bone
+    was found in, all but the bone. Returns the display.
+    """
     display = pv.Show(source, view)
     display.SetRepresentationType(SLICES)
     display.SliceStride = stride
+    if "BoneEcho" in source.PointData.keys():
+        display.Dark = BONE_SURFACE
+        # the representation calls what it shows Intensity
+        _color_apart(display, view, "Intensity", ((BONE_SURFACE, 0.95, 0.93, 0.88), (1, 0.55, 0.4, 0.3)))
+        return display
     grey = source.PointData["Intensity"]
     if grey is not None and grey.GetNumberOfComponents() == 1:
         low, high = grey.GetRange()
@@ -239,6 +247,17 @@ def look_at_slices(source, view):
     middle = poses[len(poses) // 2][:3, :2]
     lateral, depth = (middle / np.linalg.norm(middle, axis=0)).T
     _look(view, depth + 0.5 * lateral + 1.2 * np.cross(lateral, depth), -depth)
+
+
+def look_onto_slices(source, view):
+    """From the probe onto what is shown, a little from aside, with the first slice at the top."""
+    poses = _poses(source)
+    middle = poses[len(poses) // 2]
+    lateral, depth = (middle[:3, :2] / np.linalg.norm(middle[:3, :2], axis=0)).T
+    onwards = np.cross(lateral, depth)
+    if onwards @ (poses[-1] - poses[0])[:3, 3] < 0:
+        onwards = -onwards
+    _look(view, depth + 0.5 * onwards + 0.3 * lateral, -onwards)
 
 
 def look_live(identity):

@@ -11,6 +11,7 @@ SIZES = {
     "Outline Reader": (500, 2000),
     "Assemble Tracked Slices": (50, 200),
     "Gate Slices": (100, 400),
+    "Bone Echo": (100, 400),
     "Scan Region": (400, 1600),
     "Probe Calibration": (400, 1600),
     "Temporal Calibration": (400, 1600),
