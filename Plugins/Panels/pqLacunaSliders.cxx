@@ -3,11 +3,13 @@
 
 #include "pqActiveObjects.h"
 #include "pqApplicationCore.h"
+#include "pqLacunaWindow.h"
 #include "pqPipelineSource.h"
 #include "pqPropertiesPanel.h"
 #include "pqServerManagerModel.h"
 #include "pqView.h"
 #include "vtkPVDataInformation.h"
+#include "vtkPythonInterpreter.h"
 #include "vtkSMArrayRangeDomain.h"
 #include "vtkSMProperty.h"
 #include "vtkSMPropertyHelper.h"
@@ -192,6 +194,10 @@ void pqLacunaSliders::Drag(const Row& row, int step)
     SM_SCOPED_TRACE(PropertiesModified).arg("proxy", row.Proxy);
     vtkSMPropertyHelper(row.Property).Set(value);
     row.Proxy->UpdateVTKObjects();
+  }
+  if (vtkPythonInterpreter::IsInitialized()) // else nothing is marked
+  {
+    pqLacunaWindow::Run("hide_places(" + QString::number(row.Proxy->GetGlobalID()) + ")");
   }
   row.Value->setText(QString::number(value, 'g', 4));
   if (pqView* view = pqActiveObjects::instance().activeView())

@@ -39,6 +39,7 @@
 #include <QAction>
 #include <QApplication>
 #include <QComboBox>
+#include <QDockWidget>
 #include <QEvent>
 #include <QGridLayout>
 #include <QLabel>
@@ -257,6 +258,7 @@ void AddUnits(const QWidget* panel)
 namespace
 {
 constexpr const char* Filler = "LacunaRBFHoleFiller";
+constexpr const char* Shown = "LacunaShown"; ///< property of a source that show_applied has shown
 
 bool IsFiller(vtkSMProxy* proxy)
 {
@@ -284,22 +286,38 @@ void ShowMarks(const pqPropertyWidget* editor)
     QString("show_marks(%1, %2)").arg(editor->proxy()->GetGlobalID()).arg(region));
 }
 
-/// Shows it again when the region was changed and rests.
+/// Shows it again when what marks the defect was changed and rests.
 void FollowMarks(const QWidget* panel)
 {
   constexpr const char* done = "LacunaMarks";
-  for (auto* editor : panel->findChildren<pqPropertyWidget*>("DefectRegion"))
+  for (auto* region : panel->findChildren<pqPropertyWidget*>("DefectRegion"))
   {
-    if (IsFiller(editor->proxy()) && !editor->property(done).toBool())
+    if (!IsFiller(region->proxy()))
     {
-      editor->setProperty(done, true);
-      auto* rest = new QTimer(editor);
+      continue;
+    }
+    auto* rest = region->findChild<QTimer*>(done);
+    if (!rest)
+    {
+      rest = new QTimer(region);
+      rest->setObjectName(done);
       rest->setSingleShot(true);
       rest->setInterval(200); // ms
-      QObject::connect(rest, &QTimer::timeout, editor, [editor] { ShowMarks(editor); });
-      QObject::connect(
-        editor, &pqPropertyWidget::changeAvailable, rest, qOverload<>(&QTimer::start));
+      QObject::connect(rest, &QTimer::timeout, region, [region] { ShowMarks(region); });
       rest->start();
+    }
+    for (const char* name :
+      { "DefectRegion", "DefectArray", "SupportArray", "Surface", "Selection" })
+    {
+      for (auto* editor : panel->findChildren<pqPropertyWidget*>(name))
+      {
+        if (editor->proxy() == region->proxy() && !editor->property(done).toBool())
+        {
+          editor->setProperty(done, true);
+          QObject::connect(
+            editor, &pqPropertyWidget::changeAvailable, rest, qOverload<>(&QTimer::start));
+        }
+      }
     }
   }
 }
@@ -439,6 +457,36 @@ void MendPicking(const QWidget* panel)
 }
 }
 
+namespace
+{
+constexpr const char* ComesUp =
+  "LacunaComesUp"; ///< property of Output Messages that ParaView has shown
+
+QDockWidget* FindMessages()
+{
+  const QWidget* window = pqCoreUtilities::mainWidget();
+  return window ? window->findChild<QDockWidget*>("outputWidgetDock") : nullptr;
+}
+
+/// Puts Output Messages below the view when it has just come up: ParaView has it float over what the message is about.
+void DockMessages()
+{
+  QDockWidget* messages = FindMessages();
+  auto* window = qobject_cast<QMainWindow*>(pqCoreUtilities::mainWidget());
+  if (!window || !messages || !messages->property(ComesUp).toBool())
+  {
+    return;
+  }
+  messages->setProperty(ComesUp, false);
+  if (messages->isVisible() && messages->isFloating())
+  {
+    messages->setFloating(false);
+    window->addDockWidget(Qt::BottomDockWidgetArea, messages);
+    window->resizeDocks({ messages }, { window->height() / 6 }, Qt::Vertical);
+  }
+}
+}
+
 //------------------------------------------------------------------------------
 pqLacunaWindow::pqLacunaWindow(QObject* parent)
   : Superclass(parent)
@@ -464,6 +512,7 @@ void pqLacunaWindow::Run(const QString& call)
                                           .arg(call)
                                           .toUtf8()
                                           .constData());
+  DockMessages();
 }
 
 //------------------------------------------------------------------------------
@@ -476,6 +525,10 @@ void pqLacunaWindow::startup()
     [this](pqServerManagerModelItem* item)
     {
       const auto* source = qobject_cast<pqPipelineSource*>(item);
+      if (source && IsOurs(source->getProxy()) && vtkPythonInterpreter::IsInitialized())
+      {
+        Run("hide_places(" + QString::number(source->getProxy()->GetGlobalID()) + ")");
+      }
       if (this->NewSources.remove(item) && source && IsFiller(source->getProxy()))
       {
         Run("hide_marks()");
@@ -501,6 +554,14 @@ bool pqLacunaWindow::eventFilter(QObject* object, QEvent* event)
       AddUnits(panel);
       FollowMarks(panel);
       MendPicking(panel);
+    }
+  }
+  else if (event->type() == QEvent::Show)
+  {
+    auto* dock = qobject_cast<QDockWidget*>(object);
+    if (dock && dock->isFloating() && dock == FindMessages())
+    {
+      dock->setProperty(ComesUp, true);
     }
   }
   return false;
@@ -599,6 +660,11 @@ void pqLacunaWindow::FollowState(pqServerManagerModelItem* item)
     {
       Run("hide_marks()");
     }
+    source->setProperty(Shown, true);
     Run("show_applied(" + identity + ")");
+  }
+  else if (source->modifiedState() == pqProxy::UNMODIFIED && source->property(Shown).toBool())
+  {
+    Run("show_places(" + identity + ")");
   }
 }

@@ -86,7 +86,7 @@ surface = GetActiveSource()
 assert surface.GetXMLName() == "Contour" and FindSource("Surface of My sweep") == surface
 assert abs(surface.Isosurfaces[0] - 120) < 1e-9  # the phantom knows its level
 shown = {display.Input.GetXMLName() for display in view.Representations if display.Visibility and display.GetProperty("Input") and display.Input}
-assert shown == {"Contour", "LacunaPhantomSweep"}, shown
+assert shown == {"Contour", "LacunaPhantomSweep", "TextSource"}, shown
 assert GetDisplayProperties(sweep, view).Representation == window.SLICES and GetDisplayProperties(sweep, view).SliceStride == 16
 largest = ExtractSurface(Input=Connectivity(Input=surface, ExtractionMode="Extract Largest Region"))
 enclosed, open_edges = demo_ultrasound.measure(largest)

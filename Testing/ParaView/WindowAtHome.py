@@ -59,7 +59,8 @@ def test(window):
     clicks.menu("Lacuna/CT to Implant")
     window.take_messages()
     implant = GetActiveSource()
-    assert implant.GetXMLName() == "LacunaSkullImplant" and {each.Input for each in shown(view)} == {implant, FindSource("Bone surface of skull.vti"), FindSource("Scale, 50 mm")}
+    names = "Bone surface of skull.vti", "Scale, 50 mm", "Facts of the implant"
+    assert implant.GetXMLName() == "LacunaSkullImplant" and {each.Input for each in shown(view)} == {implant, *map(FindSource, names)}
     ruler = FindSource("Scale, 50 mm")
     assert abs(np.linalg.norm(np.array(ruler.Point2) - np.array(ruler.Point1)) - 50) < 1e-6
     window.compare("AtHomeImplant", likeness=0.9)

@@ -89,6 +89,13 @@ def test(window):
     aside = np.linalg.norm(np.cross(marks - np.array(found["Sphere"].Center), caster_view), axis=1)
     assert aside.max() < found["Sphere"].Radius + 0.1, "as the viewer sees the sphere"
     assert filler.DefectRegion.SMProxy.GetXMLName() == "None", "nothing is applied yet"
+    # arrays count, too: where all is the defect no bone is left to fill from
+    window.press("propertiesPanel/AdvancedButton")
+    window.choose(lacuna_window.PANEL + "DefectArray/ComboBox", "Depth")
+    window.wait_for("no marks", lambda: not lacuna.window._marks)
+    window.choose(lacuna_window.PANEL + "DefectArray/ComboBox", "None")
+    window.wait_for("the marks again", lambda: lacuna.window._marks)
+    window.press("propertiesPanel/AdvancedButton")
 
     # P puts the sphere's middle on the bone under the mouse, in the patient's millimetres
     direction = np.array([-0.3, -0.5, 0.8]) / np.linalg.norm([-0.3, -0.5, 0.8])

@@ -5,22 +5,27 @@
 /// main window; functions return nothing (0) where there is none.
 #include <QAbstractButton>
 #include <QAbstractItemModel>
+#include <QAbstractItemView>
 #include <QAction>
 #include <QApplication>
 #include <QComboBox>
 #include <QDialog>
 #include <QDockWidget>
 #include <QEventLoop>
+#include <QImage>
 #include <QItemSelectionModel>
 #include <QLabel>
 #include <QLineEdit>
 #include <QMainWindow>
 #include <QMenu>
 #include <QMenuBar>
+#include <QPainter>
 #include <QPixmap>
 #include <QPointer>
 #include <QScreen>
+#include <QTabBar>
 #include <QTest>
+#include <QTextDocument>
 #include <QTextEdit>
 #include <QTimer>
 #include <QVariant>
@@ -82,6 +87,13 @@ QObject* Find(const char* path)
   return object;
 }
 
+// A child of a child by their names: the Python shell has a console, too.
+QWidget* FindWithin(const QWidget* window, const char* part, const char* name)
+{
+  const auto* parent = window ? window->findChild<QWidget*>(part) : nullptr;
+  return parent ? parent->findChild<QWidget*>(name) : nullptr;
+}
+
 // An action by the words of the menus, as "Filters/Lacuna/Mirror".
 QAction* FindAction(const char* path)
 {
@@ -107,6 +119,7 @@ QAction* FindAction(const char* path)
 // when it is there; one that nobody expects is closed, and told of.
 using Handler = void (*)();
 Handler handler = nullptr;
+Handler ticked = nullptr; // called again and again, and sees to dialogs itself
 QPointer<QWidget> handled;
 QByteArray unexpected;
 
@@ -133,7 +146,7 @@ void WatchDialogs()
   QTimer::singleShot(50, qApp, &WatchDialogs);
   static int turns = 0;
   QWidget* dialog = QApplication::activeModalWidget();
-  if (!dialog || dialog == handled)
+  if (!dialog || dialog == handled || ticked)
   {
     turns = 0;
   }
@@ -148,6 +161,146 @@ void WatchDialogs()
   {
     CloseDialog(dialog);
   }
+}
+
+// What is on the screen, by its words: the uppermost menu or list, else the dialog that is open, else every window.
+struct Seen
+{
+  QPointer<QWidget> Widget; // that takes the click
+  QPoint Place;             // in it
+};
+Seen clicked;
+
+QString Words(const QString& text)
+{
+  QString words = Plain(text.section('\t', 0, 0)).remove("...").simplified();
+  if (Qt::mightBeRichText(text))
+  {
+    QTextDocument document;
+    document.setHtml(text);
+    words = document.toPlainText().simplified();
+  }
+  return words;
+}
+
+bool Is(const QString& text, const QString& wanted)
+{
+  return !text.isEmpty() && Words(text) == wanted;
+}
+
+Seen FindRow(QAbstractItemView* view, const QString& wanted)
+{
+  const QAbstractItemModel* model = view->model();
+  if (!model)
+  {
+    return {};
+  }
+  for (int column = 0; column < model->columnCount(view->rootIndex()); ++column)
+  {
+    const QModelIndexList found = model->match(model->index(0, column, view->rootIndex()),
+      Qt::DisplayRole, wanted, -1, Qt::MatchFixedString | Qt::MatchRecursive);
+    for (const QModelIndex& index : found)
+    {
+      view->scrollTo(index);
+      const QRect area = view->visualRect(index);
+      if (area.isValid() && view->viewport()->rect().intersects(area))
+      {
+        return { view->viewport(),
+          { std::min(area.left() + 40, area.center().x()), area.center().y() } };
+      }
+    }
+  }
+  return {};
+}
+
+Seen FindMenuEntry(QWidget* menu, const QString& wanted)
+{
+  for (QAction* action : menu->actions())
+  {
+    if (!Is(action->text(), wanted) || !action->isEnabled())
+    {
+      continue;
+    }
+    auto* bar = qobject_cast<QMenuBar*>(menu);
+    auto* popup = qobject_cast<QMenu*>(menu);
+    const QRect area = bar ? bar->actionGeometry(action)
+      : popup              ? popup->actionGeometry(action)
+                           : QRect();
+    return { menu, area.center() };
+  }
+  return {};
+}
+
+Seen FindSeen(QWidget* top, const QString& wanted)
+{
+  QList<QWidget*> widgets = top->findChildren<QWidget*>();
+  widgets.prepend(top);
+  Seen other; // an icon whose words come up when the mouse rests on it, or a label
+  for (QWidget* widget : widgets)
+  {
+    if (!widget->isVisible() || !widget->isEnabled() || widget->visibleRegion().isEmpty())
+    {
+      continue;
+    }
+    const QPoint center = widget->rect().center();
+    const auto* button = qobject_cast<QAbstractButton*>(widget);
+    const auto* list = qobject_cast<QComboBox*>(widget);
+    if ((button && Is(button->text(), wanted)) || (list && Is(list->currentText(), wanted)))
+    {
+      return { widget, center };
+    }
+    if (auto* tabs = qobject_cast<QTabBar*>(widget))
+    {
+      for (int tab = 0; tab < tabs->count(); ++tab)
+      {
+        if (Is(tabs->tabText(tab), wanted))
+        {
+          return { tabs, tabs->tabRect(tab).center() };
+        }
+      }
+    }
+    Seen found;
+    if (qobject_cast<QMenu*>(widget) || qobject_cast<QMenuBar*>(widget))
+    {
+      found = FindMenuEntry(widget, wanted);
+    }
+    else if (auto* view = qobject_cast<QAbstractItemView*>(widget))
+    {
+      found = FindRow(view, wanted);
+    }
+    if (found.Widget)
+    {
+      return found;
+    }
+    const auto* label = qobject_cast<QLabel*>(widget);
+    if (!other.Widget &&
+      ((button && Is(button->toolTip(), wanted)) || (label && Is(label->text(), wanted))))
+    {
+      other = { widget, center };
+    }
+  }
+  return other;
+}
+
+void Tick()
+{
+  QTimer::singleShot(50, qApp, &Tick);
+  if (ticked)
+  {
+    ticked();
+  }
+}
+
+// The part of the screen that the main window takes, with what lies over it.
+QImage Grab()
+{
+  const QMainWindow* window = GetMainWindow();
+  const QRect area = window ? window->geometry() : QRect();
+  return window ? window->screen()
+                    ->grabWindow(0, area.x(), area.y(), area.width(), area.height())
+                    .toImage()
+                    .convertToFormat(QImage::Format_RGB32)
+                : QImage();
 }
 
 void Describe(const QObject* object, int depth, QByteArray& text)
@@ -210,7 +363,7 @@ extern "C"
   {
     static QByteArray text;
     const QMainWindow* window = GetMainWindow();
-    auto* console = window ? window->findChild<QWidget*>("consoleWidget") : nullptr;
+    auto* console = FindWithin(window, "outputWidgetDock", "consoleWidget");
     const auto* edit = console ? console->findChild<QTextEdit*>() : nullptr;
     text = edit ? edit->toPlainText().trimmed().toUtf8() : "there is no window Output Messages";
     for (QWidget* part = console; part; part = part->parentWidget())
@@ -430,6 +583,181 @@ extern "C"
              .save(QString::fromUtf8(fileName))
       ? 1
       : 0;
+  }
+
+  /// Calls the function every 50 ms from whatever event loop runs, those of dialogs too; null: no more.
+  void lacuna_every(Handler function)
+  {
+    static bool runs = false;
+    ticked = function;
+    QApplication::setCursorFlashTime(0); // a cursor that blinks would be a change on the screen
+    if (function && !runs)
+    {
+      runs = true;
+      Tick();
+    }
+  }
+
+  /// Looks for words on the screen: on menus, buttons, tabs, rows, closed lists and labels, or the words of an icon; a name with a slash is Qt's, for
+  /// an icon without words. 0: they are nowhere.
+  int lacuna_see(const char* words)
+  {
+    const QString wanted = QString::fromUtf8(words);
+    clicked = {};
+    if (wanted.contains('/'))
+    {
+      auto* widget = qobject_cast<QWidget*>(Find(words));
+      if (widget && widget->isVisible() && widget->isEnabled())
+      {
+        clicked = { widget, widget->rect().center() };
+      }
+    }
+    else if (QWidget* popup = QApplication::activePopupWidget())
+    {
+      clicked = FindSeen(popup, wanted);
+    }
+    else if (QWidget* dialog = QApplication::activeModalWidget())
+    {
+      clicked = FindSeen(dialog, wanted);
+    }
+    else
+    {
+      for (QWidget* window : QApplication::topLevelWidgets())
+      {
+        if (!clicked.Widget && window->isVisible())
+        {
+          clicked = FindSeen(window, wanted);
+        }
+      }
+    }
+    return clicked.Widget ? 1 : 0;
+  }
+
+  /// The mouse at what lacuna_see found; actions as those of lacuna_mouse. The event loop brings it there later.
+  int lacuna_seen(int action)
+  {
+    if (!clicked.Widget || !clicked.Widget->window()->windowHandle())
+    {
+      return 0;
+    }
+    QWidget* window = clicked.Widget->window();
+    const QPoint place = clicked.Widget->mapTo(window, clicked.Place);
+    static int time = 1000000;
+    time += 600; // more than a double click
+    const Qt::MouseButtons held = action == 0 ? Qt::LeftButton : Qt::NoButton;
+    const Qt::MouseButton button = action == 3 ? Qt::NoButton : Qt::LeftButton;
+    const QEvent::Type type = action == 3 ? QEvent::MouseMove
+      : action == 0                       ? QEvent::MouseButtonPress
+                                          : QEvent::MouseButtonRelease;
+    // not at once: whoever is called may open a dialog, and return when that is closed
+    QTimer::singleShot(0, window,
+      [window, place, held, button, type, now = time]
+      {
+        qt_handleMouseEvent(window->windowHandle(), place, window->mapToGlobal(place), held, button,
+          type, Qt::NoModifier, now);
+      });
+    return 1;
+  }
+
+  /// Types a text where the cursor is.
+  int lacuna_keys(const char* text)
+  {
+    QWidget* dialog = QApplication::activeModalWidget();
+    if (dialog)
+    {
+      dialog->activateWindow(); // as no window manager does
+    }
+    QWidget* field =
+      dialog && dialog->focusWidget() ? dialog->focusWidget() : QApplication::focusWidget();
+    if (!field)
+    {
+      return 0;
+    }
+    QTest::keyClicks(field, QString::fromUtf8(text));
+    return 1;
+  }
+
+  /// Whether the screen has changed since the last call.
+  int lacuna_changed()
+  {
+    static QImage before;
+    const QImage now = Grab();
+    const bool changed = now != before;
+    before = now;
+    return changed ? 1 : 0;
+  }
+
+  /// Writes a picture of the screen; number > 0: with a ring of this number around what lacuna_see found.
+  int lacuna_picture(const char* fileName, int number)
+  {
+    QImage picture = Grab();
+    const QMainWindow* window = GetMainWindow();
+    if (number > 0 && clicked.Widget && window)
+    {
+      const QPoint place =
+        clicked.Widget->mapToGlobal(clicked.Place) - window->geometry().topLeft();
+      QPainter painter(&picture);
+      painter.setRenderHint(QPainter::Antialiasing);
+      painter.setPen(QPen(Qt::white, 2));
+      painter.setBrush(QColor(216, 50, 31));
+      const QPoint aside(
+        std::min(place.x() + 26, picture.width() - 20), std::max(place.y() - 4, 18));
+      painter.drawEllipse(aside, 15, 15);
+      QFont font = painter.font();
+      font.setPixelSize(18);
+      font.setBold(true);
+      painter.setFont(font);
+      painter.drawText(
+        QRect(aside.x() - 15, aside.y() - 15, 30, 30), Qt::AlignCenter, QString::number(number));
+      painter.setBrush(Qt::NoBrush);
+      painter.setPen(QPen(QColor(216, 50, 31), 3));
+      painter.drawEllipse(place, 9, 9);
+    }
+    return picture.save(QString::fromUtf8(fileName)) ? 1 : 0;
+  }
+
+  /// All words that are seen now, one line for each widget; until the next call.
+  const char* lacuna_words()
+  {
+    static QByteArray text;
+    text.clear();
+    for (QWidget* widget : QApplication::allWidgets())
+    {
+      if (!widget->isVisible() || widget->visibleRegion().isEmpty())
+      {
+        continue;
+      }
+      QString words;
+      const auto* view = qobject_cast<const QAbstractItemView*>(widget);
+      if (const auto* edit = qobject_cast<const QTextEdit*>(widget))
+      {
+        words = edit->toPlainText();
+      }
+      else if (const auto* field = qobject_cast<const QLineEdit*>(widget))
+      {
+        words = field->text();
+      }
+      else if (view && view->model())
+      {
+        for (const QModelIndex& index : view->model()->match(view->model()->index(0, 0),
+               Qt::DisplayRole, "*", -1, Qt::MatchWildcard | Qt::MatchRecursive))
+        {
+          QStringList row;
+          for (int column = 0; column < view->model()->columnCount(index.parent()); ++column)
+          {
+            row << index.sibling(index.row(), column).data().toString();
+          }
+          words += row.join(" | ") + "\n";
+        }
+      }
+      else
+      {
+        const int which = widget->metaObject()->indexOfProperty("text");
+        words = which >= 0 ? Words(widget->property("text").toString()) : QString();
+      }
+      text += words.isEmpty() ? QByteArray() : words.toUtf8() + "\n";
+    }
+    return text.constData();
   }
 
   void lacuna_resize(int width, int height)

@@ -83,11 +83,13 @@ def check_warnings(said, expected=""):
 def inside(test):
     """Runs test(window) in paraview and ends it."""
     status = 1
+    streams = sys.stdout, sys.stderr
     sys.stdout, sys.stderr = sys.__stdout__, sys.__stderr__  # not to ParaView's messages
     try:
         from paraview.simple import GetSettingsProxy
         GetSettingsProxy("ColorPalette").Background = [0.32, 0.34, 0.43]  # that of the baselines; ParaView 6 has another
         window = Window()
+        window.streams = streams
         test(window)
         window.check_messages()
         status = 0
@@ -269,7 +271,7 @@ class Window:
     def take_messages(self):
         """What the window Output Messages says; it is empty then."""
         said = self.library.lacuna_messages().decode()
-        self.library.lacuna_press(b"clearButton")
+        self.library.lacuna_press(b"outputWidgetDock/clearButton")
         return said
 
     def expect(self, dialogs):

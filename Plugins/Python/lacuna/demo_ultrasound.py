@@ -94,9 +94,13 @@ def dimensions(image):
 
 
 def surface_level(volume):
-    """Otsu's threshold of the voxels that have a grey level: the best split into dark and bright."""
+    """Otsu's threshold of the voxels that have a grey level."""
     data = fetch(volume).GetPointData()
-    grey = vtk_to_numpy(data.GetArray("Intensity"))[vtk_to_numpy(data.GetArray("vtkValidPointMask")) > 0]
+    return best_split(vtk_to_numpy(data.GetArray("Intensity"))[vtk_to_numpy(data.GetArray("vtkValidPointMask")) > 0])
+
+
+def best_split(grey):
+    """Otsu's threshold of grey levels: the best split into dark and bright."""
     counts, edges = np.histogram(grey, 256)
     centers = (edges[:-1] + edges[1:]) / 2
     dark, bright = np.cumsum(counts)[:-1], np.cumsum(counts[::-1])[::-1][1:]

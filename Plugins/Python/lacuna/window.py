@@ -4,8 +4,8 @@
     from lacuna import window
     window.show(reader)        # a CT as bone, upright, with letters at the edges; a sweep as slices in space
 
-The plugin calls show_applied after Apply of what is new, offer_calibration for a new Tracked Slice Reader,
-place_regions for a new RBF Hole Filler, show_marks while its region is chosen, and run for the menu.
+The plugin calls show_applied after Apply of what is new, show_places after each further one, offer_calibration for a new Tracked Slice
+Reader, place_regions for a new RBF Hole Filler, show_marks while its defect is chosen, and run for the menu.
 """
 import functools
 import itertools
@@ -20,7 +20,7 @@ from vtkmodules.vtkCommonCore import vtkObject
 from vtkmodules.vtkFiltersCore import vtkThreshold
 
 from lacuna import vtkLacunaDepthMapSurface, vtkLacunaRBFHoleFiller
-from lacuna import coordinates, demo_ultrasound, live, opening, pictures, solids, views
+from lacuna import coordinates, demo_implant, demo_ultrasound, live, opening, pictures, places, solids, views
 from lacuna.data import fetch
 
 AIR, BONE = -200, 300  # Hounsfield units: below the first there is air, above the second bone
@@ -39,7 +39,11 @@ def run(job, *arguments):
     """A job of the menu by its name: one of lacuna.macros on the active source, or one of here. What is wrong is said in Output Messages."""
     from lacuna import macros
     own = {"sample_ct": sample_ct, "sample_sweep": sample_sweep, "save_solid": save_solid, "live_layout": live.show_layout}
-    return macros.run(functools.partial(own.get(job) or getattr(macros, job), *arguments))
+    places.listen()
+    result = macros.run(functools.partial(own.get(job) or getattr(macros, job), *arguments))
+    for source in pv.GetSources().values():
+        _mark_places(source)
+    return result
 
 
 def save_solid(path):
@@ -52,8 +56,12 @@ def save_solid(path):
 
 
 def sample_ct():
-    """A Skull Phantom, shown."""
-    return _show_sample(pv.SkullPhantom(registrationName="Sample CT", Spacing=[1, 1, 1], NoiseLevel=10, Sutures=1))
+    """A Skull Phantom, shown as one looks into its hole."""
+    source = _show_sample(pv.SkullPhantom(registrationName="Sample CT", Spacing=[1, 1, 1], NoiseLevel=10, Sutures=1))
+    inwards = -np.array(source.DefectDirection)
+    _look(pv.GetActiveView(), inwards, demo_implant.view_up(inwards))
+    pv.Render()
+    return source
 
 
 def sample_sweep():
@@ -66,6 +74,7 @@ def _show_sample(source):
     view = pv.GetActiveViewOrCreate("RenderView")
     pv.HideAll(view)
     views.hide_orientation(view)
+    places.hide_all()
     show(source, view)
     pv.SetActiveSource(source)
     pv.Render(view)
@@ -75,6 +84,7 @@ def _show_sample(source):
 def show_applied(identity):
     """Shows a source that was applied for the first time, by the global ID of its proxy. Never raises: ParaView shows it already."""
     try:
+        places.listen()
         source = servermanager._getPyProxy(servermanager.ActiveConnection.Session.GetRemoteObject(identity))
         view = pv.GetActiveView()
         if view is not None and hasattr(view, "GetActiveCamera") and pv.GetDisplayProperties(source, view).Visibility:
@@ -82,6 +92,35 @@ def show_applied(identity):
     except Exception as error:  # pylint: disable=broad-exception-caught
         import paraview
         paraview.print_warning(f"Lacuna: the view is ParaView's own, since {error}")
+    else:
+        _mark_places(source)
+
+
+def show_places(identity):
+    """Marks the places that a source has named in errors and warnings since its last Apply, by the global ID of its proxy. Never raises."""
+    places.listen()
+    source = servermanager._getPyProxy(servermanager.ActiveConnection.Session.GetRemoteObject(identity))
+    if source is not None:
+        view = pv.GetActiveView()
+        source.UpdatePipeline(*[view.ViewTime] * (view is not None and hasattr(view, "ViewTime")))
+        _mark_places(source)
+
+
+def hide_places(identity):
+    """Takes the marks of a source away that is being deleted. Never raises."""
+    try:
+        places.hide(identity)
+    except Exception as error:  # pylint: disable=broad-exception-caught
+        import paraview
+        paraview.print_warning(f"Lacuna: what was marked may still be seen, since {error}; Delete the view to be rid of it")
+
+
+def _mark_places(source):
+    try:
+        places.show(source)
+    except Exception as error:  # pylint: disable=broad-exception-caught
+        import paraview
+        paraview.print_warning(f"Lacuna: the places in the message are not marked, since {error}")
 
 
 def show(source, view=None):
@@ -388,9 +427,9 @@ def hole_of_map(source):
 
 
 def show_marks(identity, region=0):
-    """Shows what a region of a new RBF Hole Filler would replace, before Apply: the filler's global ID, and that of the region, or 0.
+    """Shows what a new RBF Hole Filler would replace, before Apply: the filler's global ID, and that of its region, or 0.
 
-    Nothing is shown where the defect is marked by arrays or selections too, and of a remote server. Never raises.
+    Regions, arrays and selections count as its panel shows them. Nothing is shown of a remote server. Never raises.
     """
     hide_marks()
     try:
@@ -398,11 +437,8 @@ def show_marks(identity, region=0):
         if servermanager.ActiveConnection.IsRemote() or view is None or not hasattr(view, "GetActiveCamera"):
             return
         filler = servermanager._getPyProxy(session.GetRemoteObject(identity))
-        arrays = [servermanager.vtkSMPropertyHelper(filler.SMProxy, name).GetAsString() for name in ("DefectArray", "SupportArray")]
-        if any(arrays) or filler.Surface or filler.Selection:
-            return
         region = session.GetRemoteObject(region) if region else None
-        filled = _fill_coarsely(fetch(filler.Input), region and region.GetClientSideObject())
+        filled = _fill_coarsely(fetch(filler.Input), region and region.GetClientSideObject(), filler)
         if filled.GetPointData().GetArray("FilledMask") is None:
             return  # nothing is marked; Apply says why
         surface = vtkLacunaDepthMapSurface()
@@ -414,22 +450,13 @@ def show_marks(identity, region=0):
         marked.SetThresholdFunction(vtkThreshold.THRESHOLD_UPPER)
         marked.SetUpperThreshold(0.5)
         marked.Update()
-        source = servermanager.sources.TrivialProducer()  # in no pipeline browser
+        source = servermanager.sources.TrivialProducer()
         source.GetClientSideObject().SetOutput(marked.GetOutput())
-        source.UpdatePipeline()
-        display = servermanager.CreateRepresentation(source, view)
-        _marks.append((view, source, display))
-        view.SMProxy.GetProperty("Representations").RemoveProxy(display.SMProxy)
-        view.SMProxy.UpdateVTKObjects()
-        view.SMProxy.GetProperty("HiddenRepresentations").AddProxy(display.SMProxy)  # not part of a state
-        view.SMProxy.UpdateVTKObjects()
-        display.Representation = "Surface"
-        display.ColorArrayName = [None, ""]
-        display.AmbientColor = display.DiffuseColor = list(MARKED)
+        _marks.append(places.show_aside(source, view, MARKED))
+        display = _marks[-1][2]
         towards = -_matrix_of(filled)[:3, 2]
         place = "Translation" if display.SMProxy.GetProperty("Translation") else "Position"  # the names since ParaView 5.13, and before
         setattr(display, place, list(towards / np.linalg.norm(towards)))  # 1 mm before bone that it covers
-        display.Pickable = 0
         pv.Render(view)
     except Exception as error:  # pylint: disable=broad-exception-caught
         hide_marks()
@@ -443,14 +470,8 @@ _marks = []  # view, source and display of what show_marks shows
 def hide_marks():
     """Takes away what show_marks shows. Never raises: the view may be closed."""
     while _marks:
-        view, _source, display = _marks.pop()
         try:
-            if view.SMProxy not in [each.SMProxy for each in pv.GetRenderViews()]:
-                continue
-            for name in ("Representations", "HiddenRepresentations"):
-                view.SMProxy.GetProperty(name).RemoveProxy(display.SMProxy)
-            view.SMProxy.UpdateVTKObjects()
-            pv.Render(view)
+            places.hide_aside(*_marks.pop())
         except Exception as error:  # pylint: disable=broad-exception-caught
             import paraview
             paraview.print_warning(f"Lacuna: what was marked may still be seen, since {error}; Delete the view to be rid of it")
@@ -466,14 +487,39 @@ def update_quietly(algorithm):
         vtkObject.SetGlobalWarningDisplay(display)
 
 
-def _fill_coarsely(image, region=None):
-    """A depth map that is filled in a moment; without FilledMask where there is nothing to fill."""
+def _fill_coarsely(image, region=None, settings=None):
+    """A depth map that is filled in a moment; without FilledMask where there is nothing to fill. settings: a proxy of RBF Hole Filler,
+    whose arrays and selection mark the defect, too, as its panel shows them before Apply."""
     filler = vtkLacunaRBFHoleFiller()
     filler.SetInputData(image)
     filler.SetDefectRegion(region)
     filler.SetNodeSpacing(5)
+    if settings is not None:
+        filler.SetDefectArray(_unapplied(settings, "DefectArray").GetAsString())
+        filler.SetSupportArray(_unapplied(settings, "SupportArray").GetAsString())
+        for port, name in enumerate(("Surface", "Selection"), 1):
+            data = _unapplied_data(settings, name)
+            if data is not None:
+                filler.SetInputData(port, data)
     update_quietly(filler)  # that there is none is no error here
     return filler.GetOutput()
+
+
+def _unapplied(proxy, name):
+    """A property as the panel shows it."""
+    helper = servermanager.vtkSMPropertyHelper(proxy.SMProxy, name)
+    helper.SetUseUnchecked(True)
+    return helper
+
+
+def _unapplied_data(proxy, name):
+    """The data of an input as the panel shows it, or None."""
+    helper = _unapplied(proxy, name)
+    chosen = helper.GetAsProxy(0) if helper.GetNumberOfElements() else None
+    if chosen is None:
+        return None
+    chosen.UpdatePipeline()
+    return chosen.GetClientSideObject().GetOutputDataObject(helper.GetOutputPort(0))
 
 
 def _largest_hole(image, shape):
