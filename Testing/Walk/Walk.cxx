@@ -71,6 +71,7 @@ bool WalkCT(const std::string& folder)
   vtkNew<vtkLacunaRBFHoleFiller> filled;
   filled->SetInputConnection(map->GetOutputPort());
   filled->SetDefectRegion(ball);
+  filled->SetOutputMargin(20); // for the flange of the press
   vtkNew<vtkLacunaPressOrientation> press;
   press->SetInputConnection(filled->GetOutputPort());
   vtkNew<vtkLacunaIGESWriter> writer;
@@ -88,8 +89,7 @@ int main(int argc, char* argv[])
                                    : way == "CT" && WalkCT(argv[2]);
   if (!done)
   {
-    std::fprintf(
-      stderr, "Walk: %s failed\n", way.empty() ? "call with a way and a folder:" : way.c_str());
+    std::fprintf(stderr, "Walk: %s failed\n", way.empty() ? "call with a way and a folder:" : way.c_str());
   }
   return done ? 0 : 1;
 }
