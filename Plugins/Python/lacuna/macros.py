@@ -27,8 +27,6 @@ VOXELS = 8_000_000  # of a volume, at most
 PICTURES = 4  # slices shown beside a surface
 VEIL = 0.35  # their opacity, so that the surface is seen behind them
 SURE = 0.5  # of a scan region: below it Scan Region warns
-BLOCK = 16  # pixels whose mean counts there
-BRIGHT, PARTLY = 0.9, 0.25  # parts of the pixels of a row that are bright: all along the probe, and no longer so
 # What is seen of an implant, from its own field data: it is right after each Apply, and empty after an error.
 FACTS = ("'Implant: %.1f ml, %.0f g, %.1f to %.1f mm thick\\nHole: %.1f cm^2\\nError to expect: %.2f mm RMS, at most %.2f mm' % ("
          "Volume[0] / 1000, Mass[0], ThicknessMinimum[0], ThicknessMaximum[0], DefectArea[0] / 100, PredictedErrorRMS[0], "
@@ -53,12 +51,7 @@ def sweep_to_surface(source=None):
     """
     source, name, image = _sweep_of(source)
     with _made() as made, raising():
-        rectangle, is_fan = _scan_region(image)
-        volume = made(pv.SweptVolume(registrationName=f"Volume of {name}", Input=source, FanMask="Automatic" if rectangle else "None"))
-        near = 0 if is_fan else _rows_near_probe(image, rectangle)
-        if near:
-            left, top, width, height = rectangle
-            volume.FanMask, volume.ClipRectangle = "None", [left, top + near, width, height - near]
+        volume = made(pv.SweptVolume(registrationName=f"Volume of {name}", Input=source, FanMask=_fan_mask(image)))
         _fit(volume)
         smooth = made(pv.SpeckleFilter(registrationName=f"Median of {name}", Input=volume, Operation="Median", KernelSize=[MEDIAN] * 3))
         smooth.UpdatePipeline()
@@ -76,11 +69,8 @@ def sweep_to_surface(source=None):
     pictures.show_surface(surface, view, pictures.TISSUE)
     window.look_at_slices(source, view)
     views.check_orientation(view)
-    facts = [f"Surface of {slices} slices. Move it by the slider Level"]
-    if near:
-        depth = near * np.linalg.norm(np.reshape(fields.GetArray("ImageToReference").GetTuple(slices // 2), (4, 4))[:3, 1])
-        facts.append(f"Left out: {depth:.0f} mm below the probe, bright throughout (ClipRectangle of the volume)")
-    _show_facts(pv.Text(registrationName="Facts of the surface", Text="\n".join(facts)), view)
+    text = f"Surface of {slices} slices. Move it by the slider Level"
+    _show_facts(pv.Text(registrationName="Facts of the surface", Text=text), view)
     pv.SetActiveSource(surface)
     pv.Render(view)
     print(f"Lacuna: surface at grey level {level:.4g} of {slices} slices; the slider Level moves it")
@@ -95,7 +85,7 @@ def sweep_to_bone(source=None):
     """
     source, name, image = _sweep_of(source)
     with _made() as made, raising():
-        echo = made(pv.BoneEcho(registrationName=f"Bone of {name}", Input=source, FanMask="Automatic" if _scan_region(image)[0] else "None"))
+        echo = made(pv.BoneEcho(registrationName=f"Bone of {name}", Input=source, FanMask=_fan_mask(image)))
         echo.UpdatePipeline()
         area = fetch(echo).GetFieldData().GetArray("BoneArea").GetValue(0)
         volume = made(pv.SweptVolume(registrationName=f"Volume of {name}", Input=echo))
@@ -281,30 +271,13 @@ def _check_volume(image, name, level=BONE):
         raise ValueError(f"the values of '{name}' range from {low:.4g} to {high:.4g}: bone, at {level} Hounsfield units, is not among them")
 
 
-def _scan_region(image):
-    """What the probe sees, and whether it is a fan, where the images show it surely (Scan Region): a ClipRectangle, or None. Rulers and
-    texts are no tissue."""
+def _fan_mask(image):
+    """Automatic where the images show surely what the probe sees (Scan Region), else None: rulers and texts are no tissue."""
     region = vtkLacunaScanRegion()
     region.SetInputData(image)
     window.update_quietly(region)  # that there is none is no error here
-    fields = region.GetOutputDataObject(0).GetFieldData()
-    confidence = fields.GetArray("Confidence")
-    if not confidence or confidence.GetValue(0) < SURE:
-        return None, False
-    return [int(x) for x in fields.GetArray("ClipRectangle").GetTuple(0)], bool(fields.HasArray("FanRadiiInPixels"))
-
-
-def _rows_near_probe(image, rectangle):
-    """How many rows of a ClipRectangle, from the probe on, are bright throughout: no level parts anything there, and its surface would be
-    that of the gel or the skin. 0 where the first rows are not."""
-    grey = image.GetPointData().GetScalars()
-    if rectangle is None or grey.GetNumberOfComponents() != 1:
-        return 0
-    left, top, width, height = (each // BLOCK * BLOCK if k > 1 else each for k, each in enumerate(rectangle))
-    pixels = vtk_to_numpy(grey).reshape(image.GetDimensions()[::-1])[:, top:top + height, left:left + width]
-    means = pixels.reshape(len(pixels), height // BLOCK, BLOCK, width // BLOCK, BLOCK).mean(axis=(2, 4))
-    bright = (means > demo_ultrasound.best_split(means)).mean(axis=(0, 2))
-    return BLOCK * int(np.argmax(bright < PARTLY)) if len(bright) and bright[0] >= BRIGHT else 0
+    confidence = region.GetOutputDataObject(0).GetFieldData().GetArray("Confidence")
+    return "Automatic" if confidence and confidence.GetValue(0) >= SURE else "None"
 
 
 def _fit(volume, least=0):
