@@ -89,7 +89,8 @@ int main(int argc, char* argv[])
                                    : way == "CT" && WalkCT(argv[2]);
   if (!done)
   {
-    std::fprintf(stderr, "Walk: %s failed\n", way.empty() ? "call with a way and a folder:" : way.c_str());
+    std::fprintf(
+      stderr, "Walk: %s failed\n", way.empty() ? "call with a way and a folder:" : way.c_str());
   }
   return done ? 0 : 1;
 }
