@@ -98,7 +98,7 @@ public:
 
 protected:
   Algorithm(vtkAlgorithm* self);
-  virtual ~Algorithm();
+  ~Algorithm() override;
   Algorithm(const Algorithm&) = delete;
   void operator=(const Algorithm&) = delete;
 
